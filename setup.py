@@ -1,4 +1,4 @@
-"""The part of pyproject.toml that it has no words for: the extension that cffi makes of the C headers."""
+"""The part of the build that pyproject.toml cannot describe: the extension that cffi makes from the C headers."""
 
 import os
 

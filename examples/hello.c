@@ -6,7 +6,7 @@
 enum { WIDTH = 960, HEIGHT = 480, LINES = 48, POINTS = 200 };
 
 static float points[2 * LINES * POINTS]; /* pairs of x and y in pixels */
-static uint32_t offsets[LINES + 1];      /* where the points of each line begin, and where those of the last line end */
+static uint32_t offsets[LINES + 1];      /* where the points of each line begin, and where the last line ends */
 
 static void make_waves(void) {
     for (uint32_t i = 0; i < LINES; i++) {

@@ -13,7 +13,7 @@ static void print_message(void *user, camber_log_level level, const char *messag
         fprintf(user, "validate: %s\n", message);
 }
 
-/* Checks that the device's mesh and the one that the CPU makes from the same lines have the same bytes. */
+/* Checks that the device's mesh has the same bytes as the mesh that the CPU makes from the same lines. */
 static bool is_exact(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
                      const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};

@@ -429,7 +429,7 @@ static camber_status draw_map(viewer *v) {
     return draw_picture(v, &frame, 0);
 }
 
-/* Draws the last frames' times as a line, with camber, over lines at 16.7 and 50 ms. The top is 60 ms. */
+/* Uses camber to draw the times of the last frames as a line, over lines at 16.7 and 50 ms. The top is 60 ms. */
 static camber_status draw_graph(viewer *v) {
     float points[2 * (GRAPH_WIDTH + 4)] = {0, GRAPH_HEIGHT * (1 - 16.7f / 60), GRAPH_WIDTH, points[1],
                                            0, GRAPH_HEIGHT * (1 - 50.0f / 60), GRAPH_WIDTH, points[5]};
@@ -504,7 +504,7 @@ static bool draw(viewer *v, bool at_rest) {
         show(v);
     else if (v->surface && camber_surface_is_lost(v->surface))
         fprintf(stderr, "viewer: the GL context is lost\n");
-    /* interactive frames wait for the screen here; those of the benchmark do not */
+    /* interactive frames wait for the screen here; the benchmark's frames do not */
     const double ms = (v->options.benchmark ? now_ms() : drawn_ms) - begin_ms;
     v->recent[v->frame_count % GRAPH_WIDTH] = ms;
     if (v->frame_count < v->options.frames)
@@ -636,7 +636,7 @@ static void report(const viewer *v, double seconds) {
            v->times[count * 95 / 100], v->times[count - 1], v->scenes, v->coarsest_px);
 }
 
-/* The requested number of frames comes after some frames that warm up. */
+/* Whether the requested number of frames has been drawn. A benchmark first draws some frames to warm up. */
 static bool is_over(const viewer *v) {
     const int before = v->options.benchmark && !v->is_warm ? WARM_UPS : 0;
     return v->options.frames && v->frame_count >= before + v->options.frames;

@@ -13,8 +13,8 @@
 /* The unit of lengths, 1 / 1024 px, for slots, whose coordinates are px. */
 #define CAMBER_LENGTH_UNITS 1024.0f
 
-/* A chunk's sum, and whether a line begins in the chunk (or, counting backwards, ends in it), so that what comes before
- * does not belong to it. */
+/* A chunk's sum, and whether a line begins in the chunk (or, counting backwards, ends in it), so that segments before
+ * that are not part of it. */
 #define CAMBER_SUM_SHIFT 1
 #define CAMBER_SUM_CLOSED 1u
 

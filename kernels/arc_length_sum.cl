@@ -1,8 +1,8 @@
 /* arc_length_sum: computes how long the lines are within each chunk of slots.
- * Reads x, y, info[n + 2]; writes sums[2 * chunks], a chunk being CAMBER_ARC_LENGTH_CHUNK slots, with one work-item
- * each. The first sum of a chunk covers the segments after the last point that begins a line in it, the second sum
- * those before the first point that ends a line. The lowest bit of the first says whether a line begins in the chunk,
- * that of the second whether one ends there. */
+ * Reads x, y, info[n + 2]; writes sums[2 * chunks], with one work-item per chunk of CAMBER_ARC_LENGTH_CHUNK slots. The
+ * first sum of a chunk covers the segments after the last point in it that begins a line, and the second sum covers the
+ * segments before the first point that ends a line. The lowest bit of the first sum says whether a line begins in the
+ * chunk, and the lowest bit of the second says whether a line ends in it. */
 #include "arc_length.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_sum(

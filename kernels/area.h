@@ -2,8 +2,8 @@
  *
  * Input: a brush's edges in a tile, and how often its rings wind around the tile's top left corner. Output: the area of
  * each pixel that is inside the rings. Main idea: an edge changes the winding number of everything to its right in the
- * rows that it passes. So each edge adds to a pixel only what it changes there, exactly, as an area. A running sum from
- * left to right then gives the winding number of each pixel. Edges in opposite directions cancel, so that polygons that
+ * rows that it passes. So each edge adds to a pixel only its own change, exactly, as an area. A running sum from left
+ * to right then gives the winding number of each pixel. Edges in opposite directions cancel, so that polygons that
  * share an edge have no seam.
  *
  *      corner                      e1 crosses the top left of the corner: wind counts it for the whole tile.
@@ -21,8 +21,8 @@
 
 #include "tile_state.h"
 
-/* Edges of less height cover nothing. Edges that go less to the side than this, in px per px down, count as vertical.
- */
+/* Edges lower than this cover nothing. Edges that move sideways by less than this, in px per px down, count as
+ * vertical. */
 #define CAMBER_AREA_FLAT_PX 1e-12f
 #define CAMBER_AREA_UPRIGHT 1e-12f
 
@@ -47,14 +47,14 @@ CAMBER_FN camber_mask camber_edges_cross(const camber_ring_edges *e, float y) {
     return (e->y0 < y) & (e->y1 >= y);
 }
 
-/* Where they cross it. */
+/* Returns the x at which edges cross the horizontal line at y. */
 CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, float y) {
     const camber_real x = e->x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
     const camber_real least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
     return x < least ? least : x > most ? most : x;
 }
 
-/* ---- wind: what lies left of a row's tiles ---- */
+/* ---- wind: the winding numbers at the corners of a row's tiles ---- */
 
 /* The words of a crossing of the top of a row of tiles. From its column on, the winding number at the corners of tiles
  * is higher by `times` for the rings of its brush. The crossings of a row are in drawing order. */
@@ -104,7 +104,7 @@ typedef struct camber_listed_edges {
     camber_u32 brushes[CAMBER_LANES];
 } camber_listed_edges;
 
-/* Takes them from entry `first` of a list on. Lanes past its end are not edges. */
+/* Reads the segments of a list from entry `first` on. Lanes past the list's end are not edges. */
 CAMBER_FN void camber_take_listed(CAMBER_GLOBAL const float *edges, CAMBER_GLOBAL const camber_u32 *list,
                                   camber_u32 first, camber_u32 count, camber_listed_edges *l) {
     float words[4][CAMBER_LANES];
@@ -156,27 +156,28 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GL
     return camber_put_crossings(turns, first, last, brush, crossings, count);
 }
 
-/* The crossings of a tile's row that no brush has taken yet: those of the brushes still to come, the next one last. */
+/* The crossings of a tile's row that no brush has taken yet: they belong to the brushes that follow, and those of the
+ * next brush are last. */
 typedef struct camber_crossings_left {
     CAMBER_GLOBAL const camber_u32 *words;
-    camber_u32 first, end, column; /* column: that of the tile */
+    camber_u32 first, end, column; /* column: the tile's column */
 } camber_crossings_left;
 
-/* Returns the brush of the next crossing; 0, a brush without polygons: there is none. */
+/* Returns the brush of the next crossing, or 0, a brush without polygons, if there is none. */
 CAMBER_FN camber_u32 camber_next_crossing(const camber_crossings_left *left) {
     return left->end > left->first
                ? left->words[CAMBER_CROSSING_WORDS * (size_t)(left->end - 1u) + CAMBER_CROSSING_BRUSH]
                : 0u;
 }
 
-/* Returns the brush of the next area that need not have edges in the tile: of a crossing or of a fill. 0: none. */
+/* Returns the brush of the next crossing or fill, an area that need not have edges in the tile; 0 if there is none. */
 CAMBER_FN camber_u32 camber_next_area(const camber_crossings_left *left, const camber_brush *now) {
     const camber_u32 crossing = camber_next_crossing(left);
     return crossing > now->fill ? crossing : now->fill;
 }
 
-/* Returns a brush: after its lists, a slice draws the areas above it. Those are the slice's crossings and the fills
- * between them. Fills below wait until a slice draws something below them, or until the last slice. */
+/* Returns the brush above which a slice draws areas after its lists. These areas are the slice's crossings and the
+ * fills between them. Fills below wait until a slice draws something below them, or until the last slice. */
 CAMBER_FN camber_u32 camber_areas_end(const camber_crossings_left *left, camber_u32 is_last) {
     if (is_last)
         return 0u;
@@ -226,7 +227,8 @@ CAMBER_FN camber_mask camber_cell_at(camber_real at, camber_mask counts, float m
     return CAMBER_TO_INTEGERS((counts & (cell > none)) ? (cell < most ? cell : CAMBER_REAL(most)) : none);
 }
 
-/* Cuts the edges that enter the tile through its left side on their way down, and those that leave it there. */
+/* Cuts the edges that enter the tile through its left side on their way down, and the edges that leave it through that
+ * side. */
 CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camber_mask leaves) {
     camber_ring_edges *e = &t->in;
     const camber_real none = CAMBER_REAL(0.0f), side = CAMBER_REAL((float)CAMBER_TILE_PX);
@@ -279,7 +281,7 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     }
 }
 
-/* A single one of them. If it is flat, y1 is y0, and slope is the x at which it ends. */
+/* A single edge in a tile. If it is flat, y1 is y0, and slope is the x at which it ends. */
 typedef struct camber_tile_edge {
     float x0, y0, y1, slope;
     int down;
@@ -390,8 +392,8 @@ CAMBER_FN camber_real camber_edge_pieces_left_of(const camber_edge_pieces *p, fl
     return rise * inner * inner + p->height * past;
 }
 
-/* Returns for each pixel what is left of its right side, minus what is left of the previous pixel's. before: the same
- * value of the previous cell. */
+/* Returns for each pixel the area to the left of its right side minus the area to the left of the previous pixel's
+ * right side. before: the same areas for the previous cell. */
 CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real *before, int v) {
 #if CAMBER_LANES == 1
     return all[v] - (v % CAMBER_CELL_PX ? all[v - 1] : before[v + CAMBER_CELL_PX - 1]);
@@ -407,13 +409,13 @@ CAMBER_FN camber_real camber_of_pixels(const camber_real *all, const camber_real
 #endif
 }
 
-/* Returns how much of the pieces' rows is left of the right sides of the pixels in a column of cells. */
+/* Returns how much of the pieces' rows is to the left of the right sides of the pixels in a column of cells. */
 CAMBER_FN camber_real camber_edge_pieces_until(const camber_edge_pieces *p, float rise, int column, int v) {
     return camber_edge_pieces_left_of(p + v, rise, (float)(CAMBER_CELL_PX * column + 1) + camber_columns_of_cell(v));
 }
 
-/* Adds edge k of a vector to the columns of a row of cells, and to everything right of them. What is left of the drawn
- * columns changes the first of those. */
+/* Adds edge k of a vector to the columns of a row of cells, and to everything right of them. The part of the edge to
+ * the left of the drawn columns changes the first of these. */
 CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row,
                                    const camber_cell_columns *at, camber_tile_rows where) {
     const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS,

@@ -1,4 +1,5 @@
-/* Polygons: computes what is inside a brush's rings from what their edges change in a tile (area.h).
+/* Polygons: computes how much of each pixel is inside a brush's rings, from the changes that their edges make in a tile
+ * (area.h).
  *
  * Main idea: if the winding numbers in a pixel are only 0 and 1, their sum is exactly the area inside. If polygons of
  * one fill overlap or cross, a winding number of 2 must count as 1, which a sum hides. Cells with such pixels are found
@@ -6,7 +7,7 @@
  * rows of samples at exact positions. The excess winding between them is subtracted from the sum:
  *
  *      once  twice  once
- *     ----+-------+-------    a row of samples: the sum has 2 between the edges, and 1 too much
+ *     ----+-------+-------    a row of samples: between the edges the sum is 2, which is 1 too much
  *         e1      e2
  *
  * So a pixel without such winding numbers keeps its sum. Here a lane is a row of samples. */
@@ -17,7 +18,8 @@
 
 /* Sums that are off by less than this belong to polygons that do not overlap. */
 #define CAMBER_AREA_SLACK (CAMBER_AREA_ONE / 1024)
-/* An area less than this counts as 0, and one less than this short of a pixel as the whole pixel. */
+/* An area below this counts as 0, and an area that is less than this short of a whole pixel counts as the whole pixel.
+ */
 #define CAMBER_AREA_LEAST 1e-5f
 
 /* Returns how much of each pixel is inside, given the sum of its winding numbers. */
@@ -128,7 +130,7 @@ CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row
     }
 }
 
-/* Returns the excess of a winding number over what is inside, given its sign in this cell. */
+/* Returns by how much a winding number, times its sign in this cell, exceeds its value by the fill rule, 0 to 1. */
 CAMBER_FN camber_real camber_too_much(camber_real winding, float sign, camber_u32 mode) {
     const camber_real one = CAMBER_REAL(1.0f);
     camber_real inside = CAMBER_FABS(winding);
@@ -144,7 +146,7 @@ typedef struct camber_row_edges {
     int count;
 } camber_row_edges;
 
-/* Computes these for vector v of a row. */
+/* Finds these edges for vector v of a row of pixels. */
 CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, camber_row_edges *s) {
     const camber_real y = camber_piled_cell_rows(o, row, v), none = CAMBER_REAL(0.0f);
     const float top = (float)(CAMBER_CELL_PX * o->row + row);
@@ -158,7 +160,8 @@ CAMBER_FN void camber_row_edges_of(const camber_piled_cell *o, int row, int v, c
     }
 }
 
-/* Adds to each pixel the excess of its sum in a vector of rows of samples. much: that of the rows, for each column. */
+/* Adds to each pixel the excess of its sum in a vector of rows of samples. much: the excess of the rows, for each
+ * column. */
 CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin, float sign, camber_u32 mode,
                                    camber_real much[CAMBER_CELL_PX]) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), from = camber_too_much(begin, sign, mode);
@@ -178,7 +181,7 @@ CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin,
     }
 }
 
-/* Subtracts the excess from the sums of a row of pixels of cell i, which then become what is inside. */
+/* Subtracts the excess from the sums of a row of pixels of cell i, which then become the areas inside. */
 CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int i, int row, float sign) {
     const int first = CAMBER_CELL_PX * row;
     const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
@@ -197,8 +200,8 @@ CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_ce
     }
 }
 
-/* Computes what is inside for the pixels of those cells of a row in which rings may overlap. Their sums must have been
- * computed. */
+/* Computes the areas inside for the pixels of those cells of a row in which rings may overlap. Their sums must have
+ * been computed. */
 CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells, camber_tile_rows where) {
     const camber_area_state *s = &c->area;
     camber_row_lists lists;
@@ -250,8 +253,8 @@ CAMBER_FN int camber_cell_overlaps(const camber_mask *sums, camber_corners of, c
     return of.least < -1 || of.most > 1 || of.most - of.least > 1;
 }
 
-/* Computes what is inside in a cell that edges pass. sums: the sums of its pixels' winding numbers. Returns whether
- * rings may overlap there. */
+/* Computes the areas inside for a cell that edges pass. sums: the sums of its pixels' winding numbers. Returns whether
+ * rings may overlap in the cell. */
 CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_mask *sums, camber_corners of,
                                     camber_area_cells *found) {
     const float part = 1.0f / CAMBER_AREA_ONE;
@@ -273,8 +276,8 @@ CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_ma
     return 0;
 }
 
-/* Adds up what the edges of a row of cells change, from left to right, and computes what is inside. A cell that no edge
- * passes is completely inside or outside, like any of its pixels. */
+/* Adds up the changes by the edges of a row of cells, from left to right, and computes the areas inside. A cell that no
+ * edge passes is completely inside or outside, like any of its pixels. */
 CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_tile_rows where,
                                     camber_area_cells *found) {
     const int *turns_above = c->area.turns[row], *turns_below = c->area.turns[row + 1];
@@ -310,8 +313,8 @@ CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hi
         camber_area_find_overlaps(c, row, overlaps, where);
 }
 
-/* Finds the cells that have something inside the brush's rings, and ends the rings. For those that may be partly
- * inside, c->sums then has what is inside. A row of cells that no edge passes is completely inside or outside. */
+/* Finds the cells that have something inside the brush's rings, and ends the rings. For cells that may be partly
+ * inside, c->sums then has the areas inside. A row of cells that no edge passes is completely inside or outside. */
 CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_area_cells *found) {
     const camber_u64 hidden = c->done | c->filled, edged = c->area.has_edges ? c->area.edged : 0;
     found->whole = found->partial = 0;
@@ -326,7 +329,7 @@ CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, ca
     c->winding = 0;
 }
 
-/* Draws what is inside the brush's rings, before the brush is closed. */
+/* Draws the inside of the brush's rings, before the brush is closed. */
 CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
     camber_area_cells found;
     camber_area_find(c, where, &found);

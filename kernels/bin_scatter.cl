@@ -1,6 +1,7 @@
 /* bin_scatter: writes the list of each tile, its segments in drawing order. A work-item takes a chunk of segments. It
- * puts them where bin_count and bin_scan have made room, so that the order does not depend on the number of chunks.
- * After the tiles' lists come those of rows of tiles, with the edges of rings that may cross their tops.
+ * writes them to the positions that bin_count and bin_scan have computed, so that the order does not depend on the
+ * number of chunks.
+ * The tiles' lists are followed by lists for rows of tiles, with the edges of rings that may cross their tops.
  * Reads segments, edges, boxes[segment_count], as setup writes them, and starts[lists]. Advances counts[chunks * lists]
  * to each chunk's end. Writes lists[starts[lists]]. */
 #include "bins.cl"

@@ -1,5 +1,5 @@
-/* The lists that segments go to: those of tiles, and, after them, those of rows of tiles, for the edges of rings that
- * may cross their tops. bin_count and bin_scatter take a chunk of segments each, in the same steps.
+/* The lists that segments are added to: one for each tile and, after these, one for each row of tiles, with the edges
+ * of rings that may cross its top. bin_count and bin_scatter take a chunk of segments each, in the same steps.
  *
  * Most boxes are one tile or two, away from the area's sides, and a segment with such a box touches all of its tiles.
  * These are handled sixteen at a time. First the entries are written to a queue without a branch, since no processor
@@ -19,13 +19,13 @@ typedef struct listed {
     camber_u32 entries[LISTED_MOST], count, base;
 } listed;
 
-/* Where listed segments go. */
+/* The lists that queued entries are added to, or their counts. */
 typedef struct bins {
     global const camber_u32 *starts;
     global camber_u32 *own, *lists; /* own: the chunk's counts. lists: NULL if segments are only counted */
 } bins;
 
-/* Puts all queued entries. base: the segment that further entries are relative to. */
+/* Adds all queued entries to their lists, or counts them. base: the segment that further entries are relative to. */
 static __attribute__((noinline)) void put_listed(const bins *to, listed *l, camber_u32 base) {
     const camber_u32 count = l->count, from = l->base;
     for (camber_u32 i = 0; i < count && !to->lists; i++)
@@ -56,8 +56,8 @@ static __attribute__((noinline)) void list_any(global const float *segments, glo
     }
 }
 
-/* Sixteen boxes: the entries of the first and the last tile, and of the row whose top is between them; and for each
- * whether it exists, 1 or 0. A box of another kind has none of them. */
+/* Sixteen boxes: the entries of the first and the last tile, and of the row whose top is between them; and whether each
+ * of them exists, 1 or 0. A box of another kind has none of them. */
 typedef struct sixteen_boxes {
     camber_u32 first[16], last[16], top[16], has_first[16], has_last[16], has_top[16], is_other[16];
 } sixteen_boxes;
@@ -67,7 +67,8 @@ typedef struct sixteen_boxes {
 #define BELOW_0(x) ((camber_u32)(x) >> 31)
 #define NOT_0(x) min(x, 1u)
 
-/* from: the first segment; base: the one that entries are relative to. The compiler vectorises this loop. */
+/* Finds the entries of sixteen boxes. from: the first segment; base: the segment that entries are relative to. The
+ * compiler vectorises this loop. */
 static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from, camber_u32 base,
                                  const camber_bin_args *c, sixteen_boxes *b) {
     const camber_u32 columns = c->of.columns, rows = c->of.rows, edges = c->edge_count;
@@ -94,7 +95,7 @@ static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from
     }
 }
 
-/* Puts the segments of a chunk into their lists, or counts them. */
+/* Adds the segments of a chunk to their lists, or counts them. */
 static __attribute__((noinline)) void bin_chunk(global const float *segments, global const float *edges,
                                                 global const camber_u32 *boxes, camber_u32 chunk,
                                                 const camber_bin_args *c, const bins *to) {

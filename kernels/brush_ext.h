@@ -13,9 +13,9 @@
  * segment; the line's length, in px; 0. */
 #define CAMBER_SEGMENT_ARC_LENGTHS 4
 
-/* One for each brush. It points into the side table, which is counted in float4s. A dash takes one: where it begins and
- * ends, in px; the list repeats the period's last dash before the first, and its first after the last. A stop of a ramp
- * takes two: its position, and its premultiplied colour. */
+/* The extension of a brush; each brush has one. It points into the side table, which is counted in float4s. A dash
+ * takes one: where it begins and ends, in px; the list repeats the period's last dash before the first, and its first
+ * after the last. A stop of a ramp takes two: its position, and its premultiplied colour. */
 typedef struct camber_brush_ext {
     camber_u32 features;
     float half_gap, blur, period; /* px; a blur below 0 fades by a smooth step */

@@ -37,7 +37,7 @@ static inline uint bits_of(camber_mask lanes) {
     return bits;
 }
 
-/* Cells, one bit each: those that a segment touches, those that an end is near, and those that it fills. */
+/* Cells, one bit each: those that a segment touches, those near one of its ends, and those that it fills. */
 typedef struct cell_sets {
     ulong partial, near_end, full;
 } cell_sets;

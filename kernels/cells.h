@@ -12,8 +12,8 @@
 /* A vector has CAMBER_LANES of the sixteen pixels of a cell, row by row, or of sixteen segments. */
 #define CAMBER_VECTORS (16 / CAMBER_LANES)
 
-/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. What is stored per row or column of
- * cells is at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and what is stored per cell at CAMBER_OWN_CELL. */
+/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. Values per row or column of cells
+ * are stored at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and values per cell at CAMBER_OWN_CELL. */
 #if defined(CAMBER_DEVICE) && CAMBER_LANES == 1
 #define CAMBER_OWN_SIDE 1
 #define CAMBER_OWN_ROW(row) 0
@@ -37,7 +37,7 @@ typedef struct camber_tile_rows {
     float left, top;
     int first, last;
 #if CAMBER_OWN_SIDE == 1
-    int column; /* of the one cell */
+    int column; /* column of the one cell */
 #endif
 } camber_tile_rows;
 
@@ -80,7 +80,7 @@ typedef struct camber_footprint {
     camber_real ax, ay, bx, by, reach;
 } camber_footprint;
 
-/* Computes that of one segment, the same in all lanes. */
+/* Computes the footprint of one segment, the same in all lanes. */
 CAMBER_FN void camber_footprint_of(CAMBER_GLOBAL const float *segment, camber_footprint *f) {
     f->ax = CAMBER_REAL(segment[CAMBER_SEGMENT_AX]);
     f->ay = CAMBER_REAL(segment[CAMBER_SEGMENT_AY]);
@@ -94,7 +94,7 @@ typedef struct camber_cell_boxes {
     camber_mask x, y, columns, rows; /* as integers */
 } camber_cell_boxes;
 
-/* wanted: the lanes that count. */
+/* Computes the boxes of segments. wanted: the lanes that count. */
 CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows where, camber_mask wanted,
                                     camber_cell_boxes *b) {
     const float a_cell = 1.0f / CAMBER_CELL_PX;
@@ -114,13 +114,13 @@ CAMBER_FN void camber_cell_boxes_of(const camber_footprint *f, camber_tile_rows 
 
 #if !CAMBER_STROKE_PITCHED
 
-/* ---- How cells lie to segments from above; edge.h has it for a pitch ---- */
+/* ---- The position of cells relative to segments without a pitch; edge.h has it with one ---- */
 
 /* Bounds, in px, that the position of a cell's middle is compared with to find the cell's position relative to a
  * segment. */
 typedef struct camber_cell_bounds {
     camber_real wide, full;       /* to the side of the line: for cells that it touches, and for cells that it fills */
-    camber_real near_a, near_b;   /* along the line: an end matters before the first and after the second */
+    camber_real near_a, near_b;   /* along the line: an end matters before near_a and after near_b */
     camber_real near_fa, near_fb; /* the same, past the bisectors */
     camber_real far_a, far_b;     /* past the bisectors, where the neighbour has all pixels */
 } camber_cell_bounds;

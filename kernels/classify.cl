@@ -3,7 +3,7 @@
  * and the last stay 0. Points of areas get 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are
  * set by the build. A work-group's items take its points in turn; if one takes them all, its loops are vectorised.
  *
- *     rows    usually all points have the same, which is read once: gathers are slow, and AVX2's are split up
+ *     rows    usually all points have the same row, which is read once: gathers are slow, and AVX2's are split up
  *     turns   roots and divisions that depend on each other: the shorter the loop, the more points are in flight
  *     words   from both
  *

@@ -4,15 +4,15 @@
  *     stretches its polylines without invalid points, with their boxes
  *     slots     what classify reads: the points that the camera sees at its tolerance, in px
  *
- * Each chunk of points is walked separately: each point puts its own slot, and, if the window cuts the segment after
+ * Each chunk of points is walked separately: each point writes its own slot, and, if the window cuts the segment after
  * it, the ends of that segment. The walk also reads points past the chunk's end, so that slots do not depend on how
  * points are divided into chunks.
  *
  *     window  +-----------------------------+
- *             |   A1.....A2                 |      A1, A2, then an end that A2 puts
+ *             |   A1.....A2                 |      A1, A2, then an end that A2 writes
  *             |            \                |
  *             +-------------e---------------+
- *                            A3        A5          A3 puts nothing, A4 a beginning
+ *                            A3        A5          A3 writes nothing, A4 a beginning
  *             +--------------------b---/----+
  *                               A4-'               (pictured: two sides of one window) */
 #ifndef CAMBER_KERNELS_CULL_H
@@ -45,7 +45,8 @@
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
 #define CAMBER_STRETCH_AREA CAMBER_POINT_AREA
 
-/* Points of a polyline without invalid ones between them. A final stretch begins at the total number of points. */
+/* Consecutive points of a polyline, with no invalid point among them. A final stretch begins at the total number of
+ * points. */
 typedef struct camber_stretch {
     camber_u32 first; /* its first point; it ends where the next stretch begins */
     camber_u32 word;
@@ -61,7 +62,7 @@ typedef struct camber_projection {
     float window_x0, window_y0, window_x1, window_y1; /* px: all slots are inside it */
     camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes do not touch it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
-    camber_u32 begin, end;                            /* the points to walk, counted from there */
+    camber_u32 begin, end;                            /* the points to walk, counted from first_point */
     float step_px;
     /* For a camera with a pitch, the window is a trapezoid. Its sides come `slope` px closer per px down, to window_x0
      * and window_x1 at its bottom. Depth is 1 at middle_y, where `tolerance` holds, and falls by `fall` per px down. */
@@ -69,21 +70,21 @@ typedef struct camber_projection {
     float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
 
-/* A walk over points: the arrays that it reads, and where it puts slots. */
+/* A walk over points: the arrays that it reads, and where it writes slots. */
 typedef struct camber_walk {
     CAMBER_GLOBAL const camber_i32 *x, *y;
     CAMBER_GLOBAL const float *importance;
     CAMBER_GLOBAL float *slot_x, *slot_y;
     CAMBER_GLOBAL camber_u32 *slot_info;
-    camber_u32 puts;             /* 0: slots are only counted, 1: they are also put */
+    camber_u32 puts;             /* 0: slots are only counted, 1: they are also written */
     camber_u32 at;               /* the next slot */
-    camber_u32 first, end, word; /* of the stretch */
+    camber_u32 first, end, word; /* first point, end and word of the stretch */
 #if CAMBER_WALK_ARC_LENGTHS
     CAMBER_GLOBAL const float *lengths;    /* how far along its stretch each point is, in steps. NULL: no arc lengths */
     CAMBER_GLOBAL float *slot_arc_lengths; /* camber_arc_length of each slot */
     CAMBER_GLOBAL const float *totals;     /* for each stretch the length of its whole line, in steps */
     CAMBER_GLOBAL const camber_stretch *stretches;
-    float total; /* of the stretch */
+    float total; /* length of the whole line of the stretch, in steps */
 #endif
 } camber_walk;
 
@@ -184,8 +185,8 @@ CAMBER_FN camber_kept_point camber_pull(const camber_walk *w, const camber_proje
 }
 
 #if CAMBER_WALK_PITCHED
-/* Returns where between a and b, 0 to 1, the segment crosses a side of the window. Both arguments are px inside the
- * side; b's is below 0. */
+/* Returns where between a and b, 0 to 1, the segment crosses a side of the window. The arguments say how far inside the
+ * side a and b are, in px; b's is below 0. */
 CAMBER_FN float camber_share_to(float a_inside, float b_inside) {
     return a_inside / (a_inside - b_inside);
 }
@@ -210,8 +211,8 @@ CAMBER_FN float camber_share_within_pitched(const camber_projection *p, camber_k
     return t > 0.0f ? t : 0.0f;
 }
 
-/* Returns the tolerance at a point: a px there is depth px of the plane from side to side, and more from front to back,
- * but less near the camera. */
+/* Returns the tolerance at a point. A px of the picture there spans `depth` px of the plane from side to side, and more
+ * from front to back, but less near the camera. */
 CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, camber_i32 y) {
     const float depth = 1.0f - p->fall * (camber_project_y(p, x, y) - p->middle_y);
     const float seen = depth > p->nearest ? depth : p->nearest;
@@ -229,8 +230,8 @@ CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projectio
     return w->importance[i] >= p->tolerance ? 1u : 0u;
 }
 
-/* Returns how far from a to b, 0 to 1, the first side of the window is that b is beyond; 1 if it is beyond none. a is
- * not beyond any of these sides, so there is no division by 0. */
+/* Returns where between a and b, 0 to 1, the segment crosses the first side of the window that b is beyond; 1 if b is
+ * beyond none. a is not beyond any of these sides, so there is no division by 0. */
 CAMBER_FN float camber_share_within(const camber_projection *p, camber_kept_point a, camber_kept_point b) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
@@ -262,7 +263,7 @@ CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_pro
 }
 #endif
 
-/* Puts b, or the point where the segment from a to b leaves the window. */
+/* Writes a slot for b, or for the point where the segment from a to b leaves the window. */
 CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b,
                               camber_u32 info) {
     const float t = camber_share_within(p, a, b);
@@ -295,8 +296,8 @@ CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_
     return next;
 }
 
-/* Puts the sentinel of a ring: before the first point the last different one, after the last point the second one. It
- * is cut like the segment that it stands for, so that both ends of the ring have the same turn. */
+/* Writes the sentinel of a ring: before the first point the last different one, after the last point the second one. It
+ * is cut like the segment that it represents, so that both ends of the ring have the same turn. */
 CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection *p, camber_u32 before,
                                         camber_kept_point seam) {
     camber_kept_point other = seam;
@@ -312,8 +313,8 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
 
 /* ---- Areas ---- */
 
-/* Returns where the segment from `in` to `out` crosses the window's left side, which only `out` is beyond. It has the
- * bits that camber_put_cut computes if it cuts there. */
+/* Returns where the segment from `in` to `out` crosses the window's left side, which only `out` is beyond. The result
+ * has the same bits that camber_put_cut computes if it cuts there. */
 CAMBER_FN float camber_left_crossing(const camber_projection *p, camber_kept_point in, camber_kept_point out) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f) {
@@ -333,12 +334,12 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
 #endif
 }
 
-/* Left of the window a polygon's segment still changes the winding number of what is in the window. That part is put as
- * a line along the window's left side, from where the segment crosses it to the height of the segment's end:
+/* Left of the window a polygon's segment still changes the winding number of points in the window. That part is written
+ * as a line along the window's left side, from where the segment crosses it to the height of the segment's end:
  *
  *     A1----------+---A2           A1'---+
  *      \          | window          |    |     A1' is on the left side, as high as A1. Points of the ring left of
- *       A0        |                 A0'  |     the window change nothing else there. */
+ *       A0        |                 A0'  |     the window change nothing else in it. */
 CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     float from = a.y, to = b.y;
@@ -359,7 +360,8 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* ---- Points ---- */
 
-/* Puts the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
+/* Writes the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point.
+ */
 CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
     const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
@@ -446,7 +448,8 @@ CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p,
     }
 }
 
-/* Computes the points of a chunk to walk, counted from the start of the arrays; none if end is not above begin. */
+/* Computes the points of a chunk to walk, counted from the start of the arrays; there are none if end is not above
+ * begin. */
 CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk, camber_u32 *begin, camber_u32 *end) {
     const camber_u32 first = chunk * CAMBER_CULL_CHUNK;
     *begin = first > p->begin ? first : p->begin;

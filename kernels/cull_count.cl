@@ -1,7 +1,7 @@
-/* cull_count: counts for each chunk of a network's points how many slots the camera makes of it.
- * Reads x, y, importance[n], stretches and one after them, chunk_stretches[n / CAMBER_CULL_CHUNK, rounded up], which is
- * the stretch of each chunk's first point; writes counts[chunks], the chunks between the projection's begin and end.
- * One work-item per chunk. */
+/* cull_count: counts for each chunk of a network's points how many slots it gives for the camera.
+ * Reads x, y, importance[n], the stretches and the final one after them, chunk_stretches[n / CAMBER_CULL_CHUNK, rounded
+ * up], which is the stretch of each chunk's first point; writes counts[chunks], for the chunks between the projection's
+ * begin and end. One work-item per chunk. */
 #include "cull.h"
 
 CAMBER_KERNEL(CAMBER_WALKERS, cull_count,

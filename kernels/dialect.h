@@ -2,8 +2,9 @@
  *
  * The build declares the dialect: CAMBER_DEVICE is defined for OpenCL C, CAMBER_GLSL for shaders, neither for C. GLSL
  * has no pointers, so structs are passed to functions as CAMBER_IN, results are returned by CAMBER_OUT, and
- * src/embed.cmake replaces `->` by `.` there. Its masks are bools, which have no & and |, so those are CAMBER_BOTH and
- * CAMBER_EITHER. Shared code avoids GLSL's reserved words (flat, half, class, input, output, sample, common). */
+ * src/embed.cmake replaces `->` by `.` there. Its masks are bools, which have no & and |, so CAMBER_BOTH and
+ * CAMBER_EITHER stand in for them. Shared code avoids GLSL's reserved words (flat, half, class, input, output, sample,
+ * common). */
 #ifndef CAMBER_KERNELS_DIALECT_H
 #define CAMBER_KERNELS_DIALECT_H
 

@@ -1,8 +1,8 @@
 /* Draws a tile, or one cell of it, one segment and one pixel at a time: for rasterize on GPUs, and for the CPU twin.
  *
  * Input: the tile's list of segments, from its end, and everything that these are drawn from. Output: a tile's state.
- * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). For all of them,
- * tile_state.h does what happens to a pixel. */
+ * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). Both use tile_state.h for
+ * everything that happens to a pixel. */
 #ifndef CAMBER_KERNELS_DRAW_CELLS_H
 #define CAMBER_KERNELS_DRAW_CELLS_H
 
@@ -37,7 +37,7 @@ typedef struct camber_drawn_tile {
 typedef struct camber_drawn_segment {
     camber_edge edge;
 #if !CAMBER_STROKE_PITCHED
-    camber_cell_bounds bounds; /* of the edge */
+    camber_cell_bounds bounds; /* bounds for cells, from the edge */
 #endif
     camber_eye eye;
 #if CAMBER_HAS_MASKS
@@ -152,7 +152,8 @@ CAMBER_FN void camber_put_pixels(camber_tile_state *c, const camber_drawn_segmen
 }
 
 #if CAMBER_HAS_MASKS
-/* Returns the colour of a pixel: of a ramp, or of an image along the line. range: where along the line the cell is. */
+/* Returns the colour of a pixel, from a ramp or from an image along the line. range: where along the line the cell is.
+ */
 CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pixel *at, const float range[2],
                                   float color[4]) {
     color[0] = color[1] = color[2] = color[3] = 1.0f;
@@ -168,7 +169,7 @@ CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pi
     }
 }
 
-/* Composites colours that change from pixel to pixel under what a cell has. */
+/* Composites colours that change from pixel to pixel under the colours that a cell already has. */
 CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
                                  const camber_cell_pixels *pixels, float range[2]) {
 #if CAMBER_STROKE_PITCHED

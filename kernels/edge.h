@@ -1,9 +1,9 @@
 /* Computes a segment's coefficients from its words, the positions of pixels relative to it, and which cells of a tile
  * it touches.
  *
- * Input: a segment's 16 words as setup writes them, with CAMBER_STROKE_PITCHED also those of its plane, and positions
- * of pixels and cells in the picture. Output: the input of stroke.h and features.h, and masks of cells. The kernels and
- * the twin compile it; shaders have a few lines of their own for the position of a fragment. */
+ * Input: a segment's 16 words as setup writes them, with CAMBER_STROKE_PITCHED also its words in the plane, and
+ * positions of pixels and cells in the picture. Output: the input of stroke.h and features.h, and masks of cells. The
+ * kernels and the twin compile it; shaders compute the position of a fragment themselves. */
 #ifndef CAMBER_KERNELS_EDGE_H
 #define CAMBER_KERNELS_EDGE_H
 
@@ -21,7 +21,7 @@ typedef struct camber_cell_masks {
 
 /* ---- With a pitch ---- */
 
-/* Returns the form of a line of the plane, given its unit normal and its position along that. */
+/* Returns the form of a line of the plane, given its unit normal and its position along this normal. */
 CAMBER_FN camber_form camber_form_of(camber_eye e, float nx, float ny, float at) {
     camber_form f;
     f.at = at;
@@ -41,7 +41,7 @@ CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_flag linea
     camber_profile_of(x, y, linear, &edge->cuts);
 }
 
-/* Computes the coefficients from the words of the footprint (segment) and those of the plane. */
+/* Computes the coefficients from the words of the footprint (segment) and the words of the plane. */
 CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, CAMBER_GLOBAL const float *plane,
                               camber_u32 flags, camber_edge *p) {
     const float ax = plane[CAMBER_SEGMENT_AX], ay = plane[CAMBER_SEGMENT_AY], bx = plane[CAMBER_SEGMENT_BX];

@@ -1,14 +1,15 @@
 /* emit: writes the records of each point and, for kite and fan, its indices.
  * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_POINT_CHUNK], bases[2 * n / CAMBER_BLOCK] (each block's
  * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count].
- * camber_strip_records and camber_join_counts in join.h define them and their order. A work-item writes those of a
- * chunk of CAMBER_POINT_CHUNK points. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] as well, and records
- * are twice as long; else arc_lengths is NULL. */
+ * camber_strip_records and camber_join_counts in join.h define them and their order. A work-item takes a chunk of
+ * CAMBER_POINT_CHUNK points. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] as well, and records are twice as
+ * long; else arc_lengths is NULL. */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
-/* Functions that are inlined into kernels do not use restrict, because oclgrind does not support it there. */
+/* Functions that are inlined into kernels do not use restrict, because oclgrind does not support it in such functions.
+ */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
@@ -27,7 +28,7 @@ static inline void put_arc_lengths(global camber_u32 *records, size_t count, glo
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
-/* Whether a point's records are other than what two stores write: for a ring's first point, a dot, a split join, a
+/* Whether a point's records are not those that put_two writes: for a ring's first point, a dot, a split join or a
  * sentinel. */
 static inline camber_u32 is_rare(camber_u32 join, camber_u32 point) {
     const camber_u32 ring_begins = CAMBER_POINT_FIRST | CAMBER_POINT_RING;
@@ -173,8 +174,8 @@ static inline void put_wedge(global camber_u32 *indices, camber_u32 p, camber_u3
     put_triangle(indices, flip ? other : p, flip ? p : other, carries);
 }
 
-/* Writes a join's triangles from the outer edge of the incoming segment to that of the outgoing one. A kite's tip
- * belongs to neither: the edge is the provoking vertex of its first triangle. */
+/* Writes a join's triangles from the outer edge of the incoming segment to the outer edge of the outgoing one. A kite's
+ * tip belongs to neither: the edge is the provoking vertex of its first triangle. */
 static inline void put_join(global camber_u32 *indices, camber_u32 record, camber_u32 triangles, camber_u32 is_fan,
                             float outer) {
     const camber_u32 p = record | CAMBER_CORNER_CENTRE;
@@ -194,7 +195,7 @@ static inline size_t put_point(global const float *x, global const float *y, glo
                                global camber_u32 *records, global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     const camber_u32 before = joins[i - 1], cap = rows[point >> CAMBER_POINT_ROW_SHIFT].cap;
-    /* One record per slot, including sentinels: those of a ring are the neighbours of its seam. */
+    /* One record per slot, including sentinels: the sentinels of a ring are the neighbours of its seam. */
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
                    join, cap, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),

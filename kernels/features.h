@@ -1,9 +1,10 @@
 /* Gaps, blurs, dashes, trims and ramps: everything that varies along and across a stroke's line. Also the complete
  * formula of a pixel's area.
  *
- * Input: a segment's coefficients, those of its brush (camber_extras), and a pixel as in stroke.h. Output: the area
- * that remains of the pixel, and its colour. C, OpenCL C and GLSL compile it; kernels draw features only if they are
- * built with CAMBER_RASTER_RICH. The macros below read dashes and stops from the side table, or from a texture. */
+ * Input: the coefficients of a segment, the coefficients of its brush (camber_extras), and a pixel as in stroke.h.
+ * Output: the area that remains of the pixel, and its colour. C, OpenCL C and GLSL compile it; kernels draw features
+ * only if they are built with CAMBER_RASTER_RICH. The macros below read dashes and stops from the side table, or from a
+ * texture. */
 #ifndef CAMBER_KERNELS_FEATURES_H
 #define CAMBER_KERNELS_FEATURES_H
 
@@ -31,9 +32,9 @@
 CAMBER_STRUCT(camber_extras) {
     camber_u32 features;
     float half_gap, blur;     /* blur below 0: it fades by a smooth step */
-    float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
+    float along, rate, total; /* arc length of A, px; arc length per px; the line's whole length, px */
     float trim_from, trim_to; /* px along the line */
-    float period, drawn;      /* of dashes: the period, in px; the fraction of it that is drawn */
+    float period, drawn;      /* the period of dashes, in px; the fraction of it that is drawn */
     camber_u32 dash_count, stop_count;
     camber_flag round_dashes;
 #ifndef CAMBER_GLSL
@@ -127,9 +128,10 @@ CAMBER_FN void camber_find_own_ends(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
     ends->past = (flat_b < CAMBER_NEVER_PX ? past_b : none) - (flat_a < CAMBER_NEVER_PX ? past_a : none);
 }
 
-/* Returns the fraction that dashes leave of what flat caps leave of a pixel. A dash that reaches an end of the line is
- * cut by the cap, and not also by its own edge: both would be in the same pixel, and the product of what they leave
- * would be too small. A pixel that spans more than a period gets the fraction of the period that is drawn. */
+/* Returns the fraction of a pixel that dashes leave, after flat caps have left theirs. A dash that reaches an end of
+ * the line is cut by the cap, and not also by its own edge: both would be in the same pixel, and the product of what
+ * they leave would be too small. A pixel that spans more than a period gets the fraction of the period that is drawn.
+ */
 CAMBER_FN camber_real camber_dashes_cover(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                           CAMBER_IN(camber_pixel) at, camber_flag aside) {
     const camber_real none = CAMBER_REAL(0.0f), least = CAMBER_REAL(1e-6f);
@@ -208,7 +210,7 @@ CAMBER_FN camber_real camber_round_dashes_within(CAMBER_IN(camber_edge) p, CAMBE
 
 /* ---- Beside the line ---- */
 
-/* Returns how far inside the second line of the join at an end a pixel is; rim if there is none. */
+/* Returns how far a pixel is inside the second line of the join at an end; `rim` if there is no second line. */
 CAMBER_FN camber_real camber_rim_at(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real rim,
                                     float out_of) {
     const float c = out_of > 0.0f ? p->cb : p->ca, s = out_of > 0.0f ? p->sb : p->sa;
@@ -244,7 +246,7 @@ CAMBER_FN camber_real camber_blurred(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_
 /* ---- Areas ---- */
 
 /* Returns the area of a pixel that the segment draws: the one formula that all functions of stroke.h are parts of.
- * features: those of e, or 0 if none are to be drawn. aside: no end is near, so that only the sides count. */
+ * features: the features of e, or 0 if none are to be drawn. aside: no end is near, so that only the sides count. */
 CAMBER_FN CAMBER_INLINE camber_real camber_stroke_area(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_extras) e,
                                                        camber_u32 features, CAMBER_INOUT(camber_pixel) at,
                                                        camber_flag aside) {

@@ -23,7 +23,7 @@ CAMBER_STRUCT(camber_image_sampler) {
     float phase, rate, aside; /* in units of the image's size: the position at A, a px along the line, a px across it */
     float length, near;       /* the segment's length; how far from a join the image bends; in px */
     float tangent_a, tangent_b;
-    float left, top, across_x, across_y, down_x, down_y; /* of a fill */
+    float left, top, across_x, across_y, down_x, down_y; /* only for a fill: the image's layout, words 4 to 9 */
     float mean[4];
 #ifndef CAMBER_GLSL
     CAMBER_GLOBAL const float *side_table;
@@ -170,16 +170,16 @@ CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, CAM
     spot->reach_y = depth * depth / e.cosine;
 }
 
-/* Returns how far before a join a position is in the image, if it is t px before the join on the line. The image is
- * stretched or squeezed near the join, up to `near` px from it, so that its end is on the bisector. A cap leaves it as
- * it is. */
+/* Returns how far before a join a position is in the image, given that it is t px before the join on the line. The
+ * image is stretched or squeezed near the join, up to `near` px from it, so that its end is on the bisector. A cap
+ * leaves it as it is. */
 CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_real y, float near) {
     const camber_real bisector = tangent * y, room = near - bisector, least = CAMBER_REAL(1e-3f);
     const camber_real share = camber_clamp_to_one((t - bisector) / CAMBER_MORE(room, least));
     return tangent == 0.0f ? t : t > near ? t : near * share;
 }
 
-/* Returns how many samples a pixel takes along a side on which it shows this many texels. */
+/* Returns how many samples are taken along a side of a pixel that spans this many texels. */
 CAMBER_FN camber_real camber_samples(camber_real texels) {
     const camber_real least = CAMBER_REAL(1.0f), most = CAMBER_REAL(CAMBER_SAMPLES_MAX), wanted = texels + 0.5f;
     const camber_real bounded = wanted > least ? wanted : least;

@@ -33,15 +33,15 @@ CAMBER_FN float camber_half_shorter(float dx, float dy, float ex, float ey) {
     return 0.5f * CAMBER_SQRT(d2 < e2 ? d2 : e2);
 }
 
-/* Returns the turn between them. The product of the lengths comes from (d.e)^2 + (d x e)^2 = |d|^2 |e|^2, so that one
- * root and one division are enough. A product below 1e-9 px times 1e-9 px counts as that; at the longest, 3e9 px, it
- * still fits into a float. */
+/* Returns the turn between the two segments. The product of the lengths comes from (d.e)^2 + (d x e)^2 = |d|^2 |e|^2,
+ * so that one root and one division are enough. A product below 1e-9 px times 1e-9 px counts as that; at the longest,
+ * 3e9 px, it still fits into a float. */
 CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
     const float along = dx * ex + dy * ey, aside = dx * ey - dy * ex;
-    const float product = along * along + aside * aside; /* of the squared lengths */
+    const float product = along * along + aside * aside; /* product of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
-    /* The larger one of c and s comes from a root that loses no precision, the smaller from cross = 2 s c. */
+    /* The larger one of c and s is a root that loses no precision, and the smaller one follows from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
     camber_turn turn;
@@ -52,7 +52,8 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     return turn;
 }
 
-/* Returns tan(t/4) as 16 bits. Never 0, which marks a cap: a straight join gets a turn of 0.007 degrees. */
+/* Returns tan(t/4) as 16 bits. The result is never 0, which marks a cap: a straight join gets a turn of 0.007 degrees.
+ */
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
     const float q = turn.s / (1.0f + turn.c) * CAMBER_LARGEST_TURN;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
@@ -137,7 +138,7 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  *                   M   |                                                  |out|
  *                   |out|
  *
- *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
+ *     split: past |tan(t/2)| = 2 (127 degrees) C is too far off; both end past P, and the fragment shader gives each
  *     its side of the bisector */
 CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_IN(camber_row) row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
@@ -194,8 +195,8 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* Returns the bound on that, in px: past a butt end, and past the inner side of a tight join, it is the pad, however
- * wide the line. */
+/* Returns the limit on the result of camber_edge_along, in px: past a butt end, and past the inner side of a tight
+ * join, it is the pad, however wide the line is. */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_flag is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
@@ -237,8 +238,8 @@ CAMBER_FN camber_u32 camber_record_join(camber_u32 join, camber_u32 cap, float h
     return (join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT)) | stub;
 }
 
-/* Returns the corner that a body begins with on a side. Cut bodies share it with the end before: those of kites the
- * inner one, and straight ones both. */
+/* Returns the corner that a body begins with on a side. Cut bodies share corners with the end before: those of kites
+ * share the inner corner, and straight ones share both. */
 CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
     const camber_flag inner = method == CAMBER_KITE && side * camber_turn_unpack(join) > 0.0f;
     const camber_flag in_both =
@@ -290,7 +291,7 @@ CAMBER_FN void camber_join_corner_at(camber_u32 corner, float q, float step, CAM
 }
 #endif
 
-/* Returns how many vertices and indices a point emits, vertices | indices << 16. Only distinct vertices count:
+/* Returns how many vertices and indices a point emits, as vertices | indices << 16. Only distinct vertices count:
  *   strip       L, R of each start and end, except the outer one that they share at a tight join
  *   kite, fan   in L, R | join's own | P if there is a join | out L, R, unless the polyline ends, and except those
  *               that camber_start_corner shares

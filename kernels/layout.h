@@ -46,7 +46,7 @@
  * that emits nothing. A ring is stored as a sentinel of its last but one point, its points with the first repeated at
  * the end, and a sentinel of its second point, so that neighbours are always i - 1 and i + 1. A first or last point
  * that is CUT is not an end: the line continues outside the window. A point of an AREA's ring has no join: only edges
- * are made of it. */
+ * are made from it. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
@@ -78,12 +78,12 @@ CAMBER_STRUCT(camber_row) {
 /* A record's last word is its point's info, with one of these. The outgoing segment places the vertices of a start,
  * except those that it shares with the end before: the incoming segment places these, to the last bit. The incoming
  * segment begins at the break before the start, or at a tight join at the record before the end. */
-#define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are those of its neighbours */
+#define CAMBER_RECORD_BREAK 16u /* between two strips: its vertices repeat those of its neighbours */
 #define CAMBER_RECORD_START 32u /* start of a strip inside a polyline, where the previous strip has ended */
 
 /* Kite and fan: an index is record << CAMBER_CORNER_BITS | corner. IN and OUT refer to the segments into and out of the
- * point. From CAMBER_CORNER_FAN on there are a fan's own vertices, by the number of steps from the edge of the incoming
- * segment. */
+ * point. The corners from CAMBER_CORNER_FAN on are a fan's own vertices, in the order of their steps from the edge of
+ * the incoming segment. */
 #define CAMBER_CORNER_BITS 7
 #define CAMBER_CORNER_CENTRE 0u
 #define CAMBER_CORNER_IN_LEFT 1u
@@ -93,7 +93,7 @@ CAMBER_STRUCT(camber_row) {
 #define CAMBER_CORNER_TIP 5u      /* tip of a kite, where the outer edges meet */
 #define CAMBER_CORNER_IN_TIP 6u   /* tip of the first of two kites */
 #define CAMBER_CORNER_BISECTOR 7u /* between two kites */
-#define CAMBER_CORNER_OUT_TIP 8u  /* of the second */
+#define CAMBER_CORNER_OUT_TIP 8u  /* tip of the second of two kites */
 #define CAMBER_CORNER_FAN 63u
 
 /* A point's join word, which classify writes, and scan and emit read:
@@ -105,7 +105,7 @@ CAMBER_STRUCT(camber_row) {
  *             27  the next point is its line's last
  *          28-31  kind: in the top bits, so that no mask narrows it to three bits, which oclgrind 21.10 gets wrong
  *
- * The stub: 1 + the length of the shorter of its two segments, whole units of CAMBER_STUB_UNIT_PX, and 63 from
+ * The stub: 1 + the length of the shorter of its two segments in whole units of CAMBER_STUB_UNIT_PX, and 63 from
  * CAMBER_STUB_PX on. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_END_MASK 7u

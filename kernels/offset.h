@@ -11,11 +11,11 @@
  *
  * Parts without room are removed: what remains of a segment or an arc is at least the offset away from every part of
  * the source line within its reach, which is CAMBER_OFFSET_REACH offsets around the end of the segment. A segment of
- * the source line hides everything nearer than the offset, which is a capsule. Since a capsule is convex, it hides one
- * interval of an offset segment; the line before hides the beginning of the offset segment up to that interval's end,
- * the line after hides its end. The remaining parts are linked in the order of the line. So a line has no more segments
- * than it had, and parts of the line beyond the reach do not count: a line that crosses itself is drawn through the
- * crossing. */
+ * the source line hides everything that is nearer to it than the offset, which is a capsule. Since a capsule is convex,
+ * it hides one interval of an offset segment; the line before hides the beginning of the offset segment up to that
+ * interval's end, the line after hides its end. The remaining parts are linked in the order of the line. So an offset
+ * line has no more segments than its source line, and parts of the line beyond the reach do not count: a line that
+ * crosses itself is drawn through the crossing. */
 #ifndef CAMBER_KERNELS_OFFSET_H
 #define CAMBER_KERNELS_OFFSET_H
 
@@ -28,13 +28,14 @@
 #define CAMBER_OFFSET_SEGMENTS 128u
 /* The most slots that are passed to find a ring's other end, if the search crosses its seam. */
 #define CAMBER_OFFSET_SEAM 65536u
-/* An arc's points are at most so far outside it; and the most points of an arc. */
+/* The most that an arc's points may be outside it, and the most points of an arc. */
 #define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
 #define CAMBER_OFFSET_ARC_POINTS_MAX 64u
-/* The rest of a cut segment is longer than this. Linked elements share one point if their ends are closer than this. */
+/* The rest of a cut segment is kept only if it is longer than SHORTEST. Linked elements share one point if their ends
+ * are closer than GAP. */
 #define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
-/* Cut segments may end this far from where they cross. */
+/* Cut segments may end this far from the point where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
 /* Marks an end of a segment that is not cut. */
 #define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f
@@ -47,7 +48,7 @@ typedef struct camber_offset_row {
     camber_u32 spare;
 } camber_offset_row;
 
-/* The rest of the offset segment that begins at a slot, in px along it, and of the arc there. */
+/* The rest of the offset segment that begins at a slot, in px along it, and the rest of the arc at the slot. */
 typedef struct camber_offset_clip {
     float from, to; /* nothing if to is not above from */
     camber_u32 arc; /* its first point | the one after its last << 8 | how many it would have in full << 16 */
@@ -155,7 +156,7 @@ typedef struct camber_offset_corner {
 } camber_offset_corner;
 
 /* Returns the corner at a slot that has neighbours. If its segments coincide, as on a way to a dead end and back, the
- * offset line goes around the end on either side. */
+ * offset line runs around the end on either side. */
 CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line *c, camber_u32 slot, float offset) {
     const float x = c->x[slot], y = c->y[slot];
     const float dx = x - c->x[slot - 1u], dy = y - c->y[slot - 1u];

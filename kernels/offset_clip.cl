@@ -1,6 +1,6 @@
-/* offset_clip: computes what remains of the offset segment that begins at each slot, and of the arc there. Reads x, y,
- * info[n + 2] and the rows' offsets; writes clips[n + 2] except the first and the last, which nobody reads. One
- * work-item per slot. */
+/* offset_clip: computes how much remains of the offset segment that begins at each slot, and of the arc at the slot.
+ * Reads x, y, info[n + 2] and the rows' offsets; writes clips[n + 2] except the first and the last, which nobody reads.
+ * One work-item per slot. */
 #include "offset_clip.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void offset_clip(

@@ -9,7 +9,7 @@
 /* A walk away from a slot: the segments of the line, cut where they leave its reach. */
 typedef struct camber_neighbour_walk {
     camber_u32 at, left;
-    float x, y, reach;    /* where it began, and how far from there it goes */
+    float x, y, reach;    /* where the walk began, and its radius around that point */
     float ax, ay, bx, by; /* the segment */
 } camber_neighbour_walk;
 
@@ -219,8 +219,8 @@ CAMBER_FN camber_u32 camber_offset_clip_arc(const camber_source_line *c, camber_
     return end > first ? first | end << 8 | arc.count << 16 : 0u;
 }
 
-/* Clips the segment that begins at a slot, and the arc there; a ring's last point leaves the arc to its first. An arc
- * of a single point needs a segment after it. */
+/* Clips the segment that begins at a slot, and the arc at the slot; a ring's last point leaves the arc to its first. An
+ * arc of a single point needs a segment after it. */
 CAMBER_FN camber_offset_clip camber_offset_clip_of(const camber_source_line *c, camber_u32 slot) {
     const camber_u32 info = c->info[slot];
     camber_offset_clip clip = {0.0f, -1.0f, 0u};

@@ -2,8 +2,8 @@
  * Reads what offset_count reads and bases[chunks + 1], the slots before each chunk and their total. Writes x, y, info[s
  * + 2], s being the total rounded up to CAMBER_BLOCK: a sentinel before the slots and sentinels after them; the joins
  * of the first and the last sentinel, which classify does not write; places[n], for each source slot the number of
- * slots from those before it. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] and writes out_arc_lengths[2 * s];
- * else both are NULL. */
+ * slots that come from the slots before it. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] and writes
+ * out_arc_lengths[2 * s]; else both are NULL. */
 #include "offset_emit.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1, 1))) void offset_emit(

@@ -1,4 +1,4 @@
-/* Emits the points of what remains of an offset line, in the order of the line. */
+/* Emits the points of the remaining parts of an offset line, in the order of the line. */
 #ifndef CAMBER_KERNELS_OFFSET_EMIT_H
 #define CAMBER_KERNELS_OFFSET_EMIT_H
 
@@ -142,7 +142,7 @@ CAMBER_FN void camber_offset_emit_end(const camber_source_line *c, camber_offset
     camber_offset_writer_point(writer, place.x, place.y, place.along);
 }
 
-/* Emits what remains of an arc, except its last point, which the next element emits. */
+/* Emits the remaining part of an arc, except its last point, which the next element emits. */
 CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                       camber_offset_row row, camber_offset_writer *writer) {
     const camber_offset_clip clip = c->clips[slot];
@@ -164,7 +164,7 @@ CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset
     }
 }
 
-/* Whether segments end approximately where they cross, and each keeps the half that leads away from there. */
+/* Whether segments end approximately where they cross, and each keeps the half that leads away from the crossing. */
 CAMBER_FN camber_u32 camber_crossing_holds(float p, float q, camber_offset_clip a, float a_length, camber_offset_clip b,
                                            float b_length) {
     const float a_to = a.to < a_length ? a.to : a_length, b_to = b.to < b_length ? b.to : b_length;
@@ -237,7 +237,7 @@ CAMBER_FN void camber_offset_emit_segment(const camber_source_line *c, camber_of
     camber_offset_writer_point(writer, x, y, camber_offset_along_segment(c, slot, &segment, clip.from));
 }
 
-/* Emits the points of a slot's arc and segment, linked to the previous element: none, or at least one. */
+/* Emits the points of a slot's arc and segment, each linked to the element before it. The slot may have neither. */
 CAMBER_FN void camber_offset_emit_elements(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            camber_offset_row row, camber_offset_writer *writer) {
     if (camber_has_arc(c, slot)) {
@@ -300,7 +300,7 @@ CAMBER_FN void camber_offset_emit_same(const camber_source_line *c, camber_u32 s
         camber_offset_writer_slot(writer, c->x[slot + 1u], c->y[slot + 1u], 0u, 0.0f);
 }
 
-/* Emits the slots that are made of a source slot: its own points, a ring's sentinels, a line's last point. */
+/* Emits the slots that come from a source slot: its own points, a ring's sentinels, a line's last point. */
 CAMBER_FN void camber_offset_emit_beside(const camber_source_line *c, camber_u32 slot, camber_offset_writer *writer) {
     const camber_u32 info = c->info[slot];
     if (!(info & CAMBER_POINT_REAL))

@@ -78,8 +78,8 @@ CAMBER_FN void camber_pitch_direction(camber_eye e, CAMBER_IN(camber_pitch_end) 
 
 /* How far past an end the segment draws pixels beyond the bisector (camber_owner_from), and its cut in the picture. If
  * the join is seen narrower than a pixel, the cut divides the pixels between both segments: it has a normal, a
- * position, and a share, which is 1 if the line is wide and the plane's bisector divides the pixels, and goes down to
- * 0. */
+ * position, and a share, which is 1 if the line is wide and the plane's bisector divides the pixels, and falls to 0 as
+ * the line becomes thinner. */
 CAMBER_STRUCT(camber_pitch_cut) {
     camber_real owner, x, y, at, wide;
 };
@@ -117,8 +117,8 @@ CAMBER_FN void camber_pitch_cut_of(camber_eye e, CAMBER_IN(camber_pitch_end) s, 
                                    CAMBER_BOTH(CAMBER_END_CLASS(s->end) != CAMBER_CLASS_CUT, kept), no);
 }
 
-/* Returns where an end is flat, in px of the plane past it; wide: that of its cut. A join that is seen narrower than a
- * pixel is not flat: both segments share the pixel. */
+/* Returns where an end is flat, in px of the plane past it; wide: the share of its cut. A join that is seen narrower
+ * than a pixel is not flat: both segments share the pixel. */
 CAMBER_FN float camber_pitch_flat_from(camber_u32 end, float half_width, float wide) {
     return wide < 1.0f ? camber_flat_from(CAMBER_END_KIND(end), half_width) : camber_flat_end_from(end, half_width);
 }

@@ -81,8 +81,8 @@ CAMBER_FN void camber_pitch_footprint(camber_eye e, const camber_segment *s, cam
     *ends = all_over ? whole : past;
 }
 
-/* Projects a straight edge of the plane, given its unit normal out of the stroke and its position along that. In the
- * picture a pixel is at[0] - at[1] x - at[2] y px inside it. */
+/* Projects a straight edge of the plane, given its unit normal out of the stroke and its position along this normal. In
+ * the picture a pixel is at[0] - at[1] x - at[2] y px inside it. */
 CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_real ny, camber_real at,
                                          camber_real edge[3]) {
     const camber_real x = nx, y = (ny - e.fall * at) / e.cosine, least = CAMBER_REAL(1e-15f);

@@ -15,7 +15,7 @@ typedef struct camber_tile_grid {
 typedef struct camber_setup_args {
     camber_u32 first, end, slot_count; /* the range's slots [first, end), and how many the part has */
     camber_u32 has_arc_length, linear; /* has_arc_length: the part's slots have arc lengths */
-    camber_u32 makes_edges;            /* of rings, instead of segments */
+    camber_u32 makes_edges;            /* setup makes edges of rings instead of segments */
     camber_u32 among_edges;            /* whether there are edges of rings before and after them */
     /* where the range's segments begin, a multiple of 16, and where its table begins among all rows */
     camber_u32 base, first_row;
@@ -25,7 +25,7 @@ typedef struct camber_setup_args {
     camber_eye eye;
     /* The range's slots at which the brush changes, and how many changes of the same input are before the part. */
     camber_u32 first_change, change_count, changes_before;
-    camber_u32 first_item; /* the first of its work-items; each range begins a new one */
+    camber_u32 first_item; /* the first of its work-items; each range begins a new work-item */
 } camber_setup_args;
 
 /* The number of slots that a work-item of setup takes: several, because starting a work-group takes a while. */
@@ -90,13 +90,13 @@ typedef struct camber_spill_args {
 #define CAMBER_PLACED_MOST 1024
 #define CAMBER_PLACED_ENTERS 2.0f
 #define CAMBER_PLACED_LEAVES 3.0f
-/* Changes of a brush's winding numbers at the top and the bottom of a row of cells, as spilled; the edges come after
- * those of all rows. */
+/* Changes of a brush's winding numbers at the top and the bottom of a row of cells, as spilled; the edges follow the
+ * changes of all rows. */
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 /* A cell that more edges than this pass keeps its plain sums even if polygons overlap, and so does a tile with more
- * than CAMBER_PLACED_MOST edges of one brush. If a work-item draws one cell, each has its own turns and edges, at most
- * one more than this. */
+ * than CAMBER_PLACED_MOST edges of one brush. If each work-item draws one cell, each has its own turns and edges, and
+ * keeps at most one edge more than this. */
 #define CAMBER_OVERLAP_EDGES 64
 #define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
 

@@ -7,16 +7,16 @@
  * pixels, rows of `stride` words. Before the last slice it writes spill[spills * tile_words] instead.
  *
  * The list is walked from its end, because what is drawn last is on top. Segments below cells that are full are
- * skipped. Each brush is accumulated as the fraction of light that it lets through, and then composited under what is
- * there already. */
+ * skipped. Each brush is accumulated as the fraction of light that it lets through, and then composited under the
+ * colours that are there already. */
 #include "spill.cl"
 
 #if CAMBER_LANES > 1 /* rasterize_one.cl does this for one lane */
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
 
-/* A list's segments are scattered in memory. If the compiler is known to be clang, those of the next batch are
- * prefetched while one is drawn. Pixels bypass the caches, because nobody reads them before all tiles are drawn. */
+/* A list's segments are scattered in memory. If the compiler is known to be clang, the segments of the next batch are
+ * prefetched while a batch is drawn. Pixels bypass the caches, because nobody reads them before all tiles are drawn. */
 #if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define AHEAD 24
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
@@ -27,8 +27,8 @@
 #define WRITE(vector, at) CAMBER_STORE(vector, 0, at)
 #endif
 
-/* The number of adjacent cells that equals the number of a cell's rows in a vector: together, a row of them fills a
- * vector. */
+/* How many adjacent cells are written together: as many as a vector holds rows of a cell, so that one row of all these
+ * cells fills a vector. */
 #define CELLS_ABREAST (CAMBER_LANES / CAMBER_CELL_PX)
 #if CAMBER_LANES == 16
 #define ABREAST(cells, row) (uint16)((cells)[0].row, (cells)[1].row, (cells)[2].row, (cells)[3].row)
@@ -210,7 +210,7 @@ static inline void ask_for(global const float *segments, global const float *edg
     }
 }
 
-/* Returns its brush. */
+/* Returns the brush of a listed segment. */
 static inline camber_u32 brush_of(global const float *segments, global const float *edges, camber_target_args s,
                                   camber_u32 which) {
     const camber_u32 brush =
@@ -259,7 +259,7 @@ CAMBER_KERNEL(1, rasterize,
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
     const camber_tile_rows where = {left, top, first, last};
     camber_u32 current = ~0u;
-    /* Prefetches the next tile's first batch, and its list. They usually come next, and segments are scattered in
+    /* Prefetches the next tile's first batch, and its list. They are usually needed next, and segments are scattered in
      * memory. */
     for (camber_u32 k = starts[tile + 2]; k > starts[tile + 1] && k + AHEAD > starts[tile + 2]; k--)
         ask_for(segments, edges, s, lists[k - 1]);

@@ -99,7 +99,7 @@ static inline void find_colors(const rich_segment *t, const camber_pixel *pixels
     }
 }
 
-/* Composites colours that change from pixel to pixel under what a cell has. */
+/* Composites colours that change from pixel to pixel under the colours that a cell already has. */
 static inline void put_colors(camber_tile_state *c, const rich_segment *t, int i, const cell_pixels *pixels,
                               float range[2]) {
 #if CAMBER_RASTER_PITCHED

@@ -20,8 +20,8 @@ typedef struct segment_batch {
 #define draw_segment_batch(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* Classes of a segment's ends: they need nothing more, flat caps, or one of the rest, of which sharp joins need most.
- */
+/* Classes of segments by what their ends need: nothing more, flat caps, or something else, of which sharp joins need
+ * most. */
 #define ENDS_PLAIN 0u
 #define ENDS_CAPPED 1u
 #define ENDS_OTHER 2u
@@ -37,7 +37,7 @@ static inline camber_words ends_of(const camber_edges *p) {
     return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
 }
 
-/* Takes the coefficients of one of sixteen segments, as if no join of it were sharp. */
+/* Takes the coefficients of one of sixteen segments, as if none of its joins were sharp. */
 static inline __attribute__((always_inline)) void take_edge(const camber_edges *from, uint k, camber_edge *p) {
     const camber_edges *all = from + k / CAMBER_LANES;
     const int lane = (int)(k % CAMBER_LANES);
@@ -179,8 +179,8 @@ static inline ulong list_all(const batch_sets *sets, uint count, ulong shut, cel
 /* Everything that a list is drawn from. */
 typedef struct list_source {
     const positions *at;
-    const camber_edges *all; /* of sixteen segments */
-    const uint *ends;        /* of each */
+    const camber_edges *all; /* coefficients of sixteen segments */
+    const uint *ends;        /* class of each segment's ends */
 } list_source;
 
 static inline camber_real list_x(const list_source *d, int i) {
@@ -197,8 +197,8 @@ static inline camber_real cut_caps(const camber_edge *p, const camber_pixel *at,
                                camber_cut_along(p, at, p->flat_b - at->past_b));
 }
 
-/* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out what such
- * ends do not need. Caps come last: what belongs to a neighbour is 0 and stays 0. */
+/* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out code that
+ * such ends do not need. Caps are computed last: the area of a neighbour's pixel is 0 and stays 0. */
 static inline __attribute__((always_inline)) void find_areas_by(const list_source *d, uint word, uint ends,
                                                                 camber_real *area) {
     const int i = (int)(word % CAMBER_CELLS);
@@ -217,7 +217,7 @@ static inline __attribute__((always_inline)) void find_areas_by(const list_sourc
     }
 }
 
-/* The expensive cases are a function of their own; inlined, they would make the drawing of a list keep everything about
+/* The expensive cases are in a separate function; inlined, they would make the drawing of a list keep everything about
  * a pixel in memory instead of registers. */
 static __attribute__((noinline)) void find_other_areas(const list_source *d, uint word, camber_real *area) {
     find_areas_by(d, word, ENDS_OTHER, area);

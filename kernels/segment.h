@@ -46,7 +46,7 @@ typedef struct camber_brush {
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
-/* Returns how many of the changes of brush, ascending slots, are at a slot or before it. */
+/* Returns how many changes of the brush, given as slots in ascending order, are at a slot or before it. */
 CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *changes, camber_u32 count, camber_u32 slot) {
     camber_u32 low = 0u, high = count;
     while (low < high) {
@@ -81,12 +81,12 @@ CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *change
 #define CAMBER_SEGMENT_WORDS 16u
 
 /* The edges of rings are stored apart from segments, in groups of sixteen: first the ends of each, ax, ay, bx, by, then
- * the brushes of all. An edge has the number of its segment, whose own words are not used. Among edges, lines have
- * CAMBER_NO_EDGE there. */
+ * the brushes of all. An edge has the number of its segment, whose own words are not used. A segment of a line that is
+ * among edges has CAMBER_NO_EDGE in place of its brush. */
 #define CAMBER_SIXTEEN_EDGES_WORDS 80u
 #define CAMBER_NO_EDGE 0xffffffffu
 
-/* Returns the word at which the ends of edge i are, and that of its brush. */
+/* Return the word at which the ends of edge i are, and the word of its brush. */
 CAMBER_FN size_t camber_edge_ends(size_t i) {
     return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 4u * (i % 16u);
 }
@@ -124,7 +124,7 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
-/* Computes the direction of a vector; that of a dot is the x axis. Returns its length. */
+/* Computes the direction of a vector; a dot has the direction of the x axis. Returns its length. */
 CAMBER_FN camber_real camber_direction(camber_real dx, camber_real dy, camber_real *ux, camber_real *uy) {
     const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f), length = CAMBER_SQRT(dx * dx + dy * dy);
     const camber_real scale = one / (length > 0.0f ? length : one);
@@ -228,7 +228,7 @@ CAMBER_FN void camber_tile_line_of(CAMBER_GLOBAL const float *segment, camber_ti
     l->reach = segment[CAMBER_SEGMENT_REACH];
 }
 
-/* Makes the same of an edge, given its ends. */
+/* Makes the same from an edge, given its ends. */
 CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_tile_line *l) {
     l->ax = ends[0];
     l->ay = ends[1];
@@ -288,7 +288,7 @@ CAMBER_FN camber_u32 camber_line_is_narrow(const camber_tile_line *l) {
 
 /* Returns the tiles of a box in row y that a segment touches: first | last << 8. If the box is one column or row, these
  * are all its tiles. At the area's edge the box may be cut, but the span must be the same as in any other area. words:
- * those of the segment, or the ends of an edge. */
+ * the words of the segment, or the ends of an edge. */
 CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_flag is_edge, camber_u32 box,
                                       camber_u32 y, const camber_tile_grid *of) {
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
@@ -306,7 +306,8 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
     return camber_row_span(&line, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
-/* Returns the first row of tiles whose top a segment with this box may cross; the last is that of the box. */
+/* Returns the first row of tiles whose top a segment with this box may cross; the last such row is the box's last row.
+ */
 CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
     return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
 }

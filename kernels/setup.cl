@@ -65,7 +65,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, camber_
         row[k] = CAMBER_LOAD(0, words[k]);
 }
 
-/* Returns the brushes of a vector of edges that end in the slots from `first` on, given those of their rows. */
+/* Returns the brushes of a vector of edges that end in the slots from `first` on, given the brushes of their rows. */
 static inline camber_words take_brushes(global const camber_u32 *changes, camber_u32 first, const camber_setup_args *r,
                                         camber_real of_rows) {
     const uint numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -86,7 +86,7 @@ static inline float2 arc_length_at(global const float *slot_arc_lengths, int slo
     return r->has_arc_length ? vload2((size_t)at, slot_arc_lengths) : (float2)(0.0f);
 }
 
-/* Writes arc lengths. Lanes that are dots are as far along their line as their point. */
+/* Writes arc lengths. A lane that is a dot gets the arc length of its point. */
 static inline void put_arc_lengths(global const float *slot_arc_lengths, int first, camber_mask is_dot,
                                    const camber_setup_args *r, const camber_segment *s, global float *arc_lengths) {
     float from[CAMBER_LANES], to[CAMBER_LANES], total[CAMBER_LANES], rates[CAMBER_LANES];
@@ -128,12 +128,12 @@ static inline void put_planes(const camber_segment *s, const camber_plane *p, gl
 }
 #endif
 
-/* Where the segments or edges of a vector of slots go. */
+/* Where the segments or edges of a vector of slots are written. */
 typedef struct outputs {
     global float *segments;
     global camber_u32 *boxes;
     global float *arc_lengths, *planes, *ends;
-    global camber_u32 *brushes; /* of edges */
+    global camber_u32 *brushes; /* brushes of edges */
 } outputs;
 
 /* A vector of points that may end segments, and those before them. */
@@ -156,7 +156,7 @@ static inline void look_up_rows(global const float *rows, const camber_setup_arg
 #endif
 }
 
-/* Takes the points of the slots from `first` on. The words of the slots come after that of the leading sentinel. */
+/* Takes the points of the slots from `first` on. The words of the slots follow the word of the leading sentinel. */
 static inline void take_points(part_points from, int first, const camber_setup_args *r, ends *e) {
     const int numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const int at = first + 1;

@@ -38,7 +38,7 @@ static inline size_t plane_at(camber_u32 plane, int cell, int v) {
     return ((size_t)plane * CAMBER_CELLS + (size_t)cell) * CAMBER_VECTORS + (size_t)v;
 }
 
-/* from and to: those of a cell, in count consecutive planes. */
+/* Spill and restore the vectors of a cell in `count` consecutive planes. */
 static inline void spill_planes(global float *planes, const camber_real *from, camber_u32 plane, camber_u32 count,
                                 int cell) {
     for (camber_u32 k = 0; k < count; k++)
@@ -153,7 +153,7 @@ static inline void restore_sets(camber_tile_state *c, camber_u32 state, int i) {
     c->blend_count[i] = (uchar)(state >> CAMBER_SPILL_COUNT_SHIFT);
 }
 
-/* Restores what a cell has of the current brush, if any, and of its levels. */
+/* Restores a cell's values of the current brush, if any, and of its levels. */
 static inline void restore_cell(camber_tile_state *c, const spilled_tile *from, camber_spill_args s, camber_u32 sets,
                                 camber_tile_rows where, int row, int column) {
     const int i = CAMBER_OWN_CELL(row, column, where), cell = CAMBER_TILE_CELLS * row + column;
@@ -175,8 +175,8 @@ static inline void restore_cell(camber_tile_state *c, const spilled_tile *from, 
         restore_area(&c->area, from, s.sums, where, row, column);
 }
 
-/* Takes the words of the rows' cells. Those that are not full have been drawn from the same list, so they have the same
- * brush and open levels. Returns where the words of such a cell are, or 0: all are full. */
+/* Restores the sets of the rows' cells from their words. Those that are not full have been drawn from the same list, so
+ * they have the same brush and open levels. Returns the words of such a cell, or 0 if all are full. */
 static inline global const camber_u32 *restore_words(camber_tile_state *c, const spilled_tile *from,
                                                      camber_tile_rows where) {
     global const camber_u32 *open = 0;

@@ -50,8 +50,8 @@
 #endif
 
 /* Returns the fraction of a pixel inside two edges, each of which leaves a and b: the smaller if they run in the same
- * direction, the product at a right angle, and a + b - 1 if they face each other. cosine: that of the angle between
- * their normals. */
+ * direction, the product at a right angle, and a + b - 1 if they face each other. cosine: the cosine of the angle
+ * between their normals. */
 CAMBER_FN camber_real camber_inside_both(camber_real a, camber_real b, camber_real cosine) {
     const camber_real weight = CAMBER_FABS(cosine), smaller = CAMBER_LESS(a, b), both = a + b - 1.0f;
     const camber_real least = both > 0.0f ? both : CAMBER_REAL(0.0f), bound = cosine > 0.0f ? smaller : least;
@@ -88,14 +88,14 @@ CAMBER_FN void camber_second_of(camber_u32 end, float c, float s, CAMBER_OUT(cam
     l->ny = l->bevel ? l->outer * c : l->outer * (c * c - sine * sine);
 }
 
-/* Returns how far inside it a pixel is. past: px past the end. */
+/* Returns how far inside the second line a pixel is. past: px past the end. */
 CAMBER_FN camber_real camber_second_inside(CAMBER_IN(camber_second) l, float half_width, camber_real past,
                                            camber_real y, float c) {
     return (l->bevel ? half_width * c : half_width) - (past * l->nx + y * l->ny);
 }
 
-/* Returns what the second line leaves of `whole`, where `cut` is what it leaves if it applies. A miter's line cuts only
- * the tip. */
+/* Returns how much of `whole` the second line leaves, given `cut`, which is the part that it leaves if it applies. A
+ * miter's line cuts only the tip. */
 CAMBER_FN camber_real camber_second_cuts(CAMBER_IN(camber_second) l, camber_real past, camber_real y, camber_real whole,
                                          camber_real cut) {
     const camber_real tip = CAMBER_BOTH(past > -1.0f, y * l->outer > 0.0f) ? cut : whole;

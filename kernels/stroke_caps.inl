@@ -2,7 +2,7 @@
  * includes it after its functions that cut pixels, so it is not a header. */
 
 /* The position of a pixel relative to a flat end: a cap, or a flat join (camber_flat_join). At a flat join the
- * segment's body ends in an edge of its own past the bisector; before the bisector the segment draws what is inside
+ * segment's body ends in an edge of its own past the bisector; before the bisector the segment draws everything inside
  * this edge or inside the cap, which is turned. */
 CAMBER_STRUCT(camber_flat_end) {
     camber_real body, cap; /* how far inside each of the two, in px */
@@ -28,8 +28,8 @@ CAMBER_FN void camber_find_flat_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_p
 }
 
 /* Returns the fraction of a pixel inside a flat end. llvmpipe runs both sides of a branch, so in shaders a cap is
- * treated as a join whose two edges coincide, apart from what a pitch makes of them; if there is no stub, its cap is
- * far away. */
+ * treated as a join whose two edges coincide, apart from the effect of a pitch; if there is no stub, its cap is far
+ * away. */
 CAMBER_FN CAMBER_INLINE camber_real camber_cut_end(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, float out_of) {
     const float from = out_of > 0.0f ? p->flat_b : p->flat_a;
     const camber_flag is_join = camber_is_flat_join(p, out_of);

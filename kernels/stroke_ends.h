@@ -1,5 +1,5 @@
 /* How segments end: the bits that encode it, and what follows from a join's word and turn. C, OpenCL C and GLSL compile
- * it; in GLSL and C a camber_real is one segment's number, on a device it may hold those of several segments. */
+ * it; in GLSL and C a camber_real is one segment's number, on a device it may hold the numbers of several segments. */
 #ifndef CAMBER_KERNELS_STROKE_ENDS_H
 #define CAMBER_KERNELS_STROKE_ENDS_H
 
@@ -44,7 +44,7 @@
     (((end) & (CAMBER_JOIN_END_MASK | 3u << CAMBER_END_CLASS_SHIFT)) ==                                                \
      (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << CAMBER_END_CLASS_SHIFT))
 
-/* Flags of a segment: 13 bits for the end at A (stroke_ends.h), as many for that at B, then the flags below. LINEAR:
+/* Flags of a segment: 13 bits for the end at A (stroke_ends.h), 13 for the end at B, then the flags below. LINEAR:
  * coverage is a linear ramp. */
 #define CAMBER_SEGMENT_END_BITS 13
 #define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
@@ -88,8 +88,8 @@ CAMBER_FN camber_mask camber_is_longer(camber_words join, camber_real length) {
     return CAMBER_BOTH(stub, length > (CAMBER_TO_REAL(CAMBER_JOIN_STUB(join)) + 1.0f) * CAMBER_STUB_UNIT_PX);
 }
 
-/* Whether possibly nothing covers what a segment of this length leaves past the bisector: because the other segment is
- * a stub, or in a wide line either of them. In thin lines the gap is too small to be seen. */
+/* Whether possibly nothing covers the part past the bisector that a segment of this length leaves, because the other
+ * segment is a stub, or because in a wide line either of the two is. In thin lines the gap is too small to be seen. */
 CAMBER_FN camber_mask camber_opens(camber_words join, camber_real length, camber_real half_width) {
     const camber_mask longer = CAMBER_BOTH(half_width > CAMBER_TIPS_PX, camber_is_longer(join, length));
     const camber_mask either = CAMBER_BOTH(half_width > CAMBER_WIDE_PX, CAMBER_JOIN_STUB(join) < CAMBER_STUB_MOST);
@@ -110,7 +110,7 @@ CAMBER_FN camber_mask camber_owner_side(camber_mask alone, camber_mask butt, cam
 }
 
 /* Returns the bits of an end that say where a join is flat: camber_cut_end. Before a butt cap the next segment may be
- * too short to cover what is past the body on its inner side, and likewise if the join opens. A segment that is no
+ * too short to cover the part past the body on its inner side, and likewise if the join opens. A segment that is no
  * longer than the stub does not know the length of the other one, which is then assumed to be long. butt: the line ends
  * with the next segment, in a butt cap; own: camber_owner_side; opens: camber_opens; length: of the segment itself. */
 CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, camber_mask own, camber_mask opens,
@@ -121,8 +121,8 @@ CAMBER_FN camber_words camber_flat_join(camber_words join, camber_mask butt, cam
     return CAMBER_EITHER(behind < most, open) ? behind << CAMBER_END_FLAT_SHIFT : none;
 }
 
-/* Returns all bits of an end. soon: whether the line ends with the next segment; length: that of the segment itself; c
- * and s: cosine and sine of half the turn. own: camber_owner_side. */
+/* Returns all bits of an end. soon: whether the line ends with the next segment; length: the length of the segment
+ * itself; c and s: cosine and sine of half the turn. own: camber_owner_side. */
 CAMBER_FN camber_words camber_end_of(camber_words join, camber_mask soon, camber_real length, camber_real c,
                                      camber_real s, camber_real half_width, CAMBER_OUT(camber_mask) own) {
     const camber_words none = CAMBER_WORD(0u), end = camber_segment_end(join);

@@ -44,7 +44,8 @@ CAMBER_FN camber_real camber_cut_along(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
     return camber_covered(s, CAMBER_REF(p->side));
 }
 
-/* The same for an edge of the stroke, whose normal points from the line to the pixel (facing: 1) or back (-1). */
+/* Returns the fraction of a pixel inside an edge of the stroke, whose normal points from the line to the pixel (facing:
+ * 1) or back (-1). */
 CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float facing) {
     CAMBER_UNUSED(at)
@@ -52,7 +53,8 @@ CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camb
     return camber_covered(s, CAMBER_REF(p->side));
 }
 
-/* The same for a join's second line. cosine: that of the angle between it and the stroke's edge. */
+/* Returns the fraction of a pixel inside a join's second line. cosine: the cosine of the angle between the line and the
+ * stroke's edge. */
 CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                         CAMBER_IN(camber_second) l, float out_of, camber_real inside,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -74,7 +76,7 @@ CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), arc_a = at->past_a - p->round_a, arc_b = at->past_b - p->round_b;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = CAMBER_MORE(farther, none);
-    /* On an arc farther than a pixel from the segment, only the distance counts. */
+    /* More than a pixel onto an arc, past the segment's end, only the distance counts. */
     const camber_real straight = 1.0f - arc, bend = camber_join_bend(at->fa, p->sa) + camber_join_bend(-at->fb, p->sb);
     at->off = arc;
     at->across = at->y - bend * CAMBER_MORE(straight, none);
@@ -98,7 +100,7 @@ CAMBER_FN camber_real camber_edge_tips(CAMBER_IN(camber_edge) p, CAMBER_INOUT(ca
 }
 
 /* Returns the fraction of a pixel inside the cap of a flat join, which is turned by an angle from the segment's own
- * end: it is cut like an edge across the segment. cosine: that of the angle between the two in the picture. */
+ * end: it is cut like an edge across the segment. cosine: the cosine of the angle between the two in the picture. */
 CAMBER_FN camber_real camber_cut_turned(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float out_of, float turn_cosine, float turn_sine,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -117,7 +119,7 @@ CAMBER_FN camber_real camber_between_ends(camber_real area, camber_real at_a, ca
 }
 
 /* Returns the part of an area that flat ends leave: one end, or both of a short segment. Ends that are not flat leave
- * all. */
+ * the whole area. */
 CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
     return camber_between_ends(area, camber_cut_end(p, at, -1.0f), camber_cut_end(p, at, 1.0f));
 }

@@ -32,7 +32,7 @@ typedef struct camber_form {
     float at, x, y;
 } camber_form;
 typedef struct camber_edge {
-    float by_cosine, fall; /* of the camera */
+    float by_cosine, fall; /* 1 / cosine of the camera's pitch, and its fall (camber_eye) */
     float ux, uy, half_width, length;
     float along_a, across_a; /* position of A along the segment's direction and across it, in px */
     float ca, sa, cb, sb;
@@ -65,8 +65,8 @@ CAMBER_STRUCT(camber_pixel) {
 #endif
 };
 
-/* Projects an edge of the plane, which is `lies` px along its unit normal. seen: its normal in the picture. Returns how
- * many px of the picture, times the depth, a px of the plane across the edge is. */
+/* Projects an edge of the plane, which is `lies` px along its unit normal. seen: its normal in the picture. Returns the
+ * length in the picture, times the depth, of one px of the plane across the edge. */
 CAMBER_FN camber_real camber_see_normal(CAMBER_IN(camber_edge) p, camber_real nx, camber_real ny, camber_real lies,
                                         CAMBER_OUT(camber_real) seen_x, CAMBER_OUT(camber_real) seen_y) {
     const camber_real y = (ny - p->fall * lies) * p->by_cosine, square = nx * nx + y * y, least = CAMBER_REAL(1e-30f);
@@ -119,14 +119,16 @@ CAMBER_FN camber_real camber_cut_along(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
     return camber_covered(s * at->scale, CAMBER_REF(at->line));
 }
 
-/* The same for an edge of the stroke, whose normal points from the line to the pixel (facing: 1) or back (-1). */
+/* Returns the fraction of a pixel inside an edge of the stroke, whose normal points from the line to the pixel (facing:
+ * 1) or back (-1). */
 CAMBER_FN camber_real camber_cut_beside(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real s,
                                         float facing) {
     camber_real x, y;
     return camber_plane_covered(p, at, s, facing * at->side_x, facing * at->side_y, CAMBER_REF(x), CAMBER_REF(y));
 }
 
-/* The same for a join's second line. cosine: that of the angle between it and the stroke's edge. */
+/* Returns the fraction of a pixel inside a join's second line. cosine: the cosine of the angle between the line and the
+ * stroke's edge. */
 CAMBER_FN camber_real camber_cut_second(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at,
                                         CAMBER_IN(camber_second) l, float out_of, camber_real inside,
                                         CAMBER_OUT(camber_real) cosine) {
@@ -145,7 +147,7 @@ CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
     return at->line.extent / at->scale;
 }
 
-/* Finds the nearest point of the line: the line's scale and direction there, `off` and `across`. */
+/* Finds the nearest point of the line, the line's scale and direction at that point, `off` and `across`. */
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
     const camber_real none = CAMBER_REAL(0.0f), ux = CAMBER_REAL(p->ux), uy = CAMBER_REAL(p->uy);
     const camber_real arc_a = camber_arc(at->past_a, p->round_a), arc_b = camber_arc(at->past_b, p->round_b);

@@ -1,9 +1,9 @@
 /* The coefficients of strokes: everything that is the same for all pixels of a segment.
  *
- * Input: a segment's words, or single ones of them. Output: camber_edge, from which stroke.h computes areas. The same
- * code is compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges):
- * stroke.h includes this file for each, after defining CAMBER_COEF and the like. So it is not a header. In shaders the
- * vertex stage calls its functions one by one, because varyings hold their results. */
+ * Input: a segment's words, or some of them. Output: camber_edge, from which stroke.h computes areas. The same code is
+ * compiled for one segment (camber_edge) and, on a device, for as many as a vector has lanes (camber_edges): stroke.h
+ * includes this file for each, after defining CAMBER_COEF and the like. So it is not a header. In shaders the vertex
+ * stage calls its functions one by one, because varyings hold their results. */
 
 /* How a straight edge cuts pixels: half a pixel's extent along its normal, the smaller component of that, and how the
  * covered area grows, linearly and over a pixel's corners. */
@@ -58,15 +58,15 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_round_from(CAMBER_COEF_WORDS kind)
 }
 
 /* Returns where the cap of a thin line ends, in px past the end. The formula for arcs would treat such a line as one
- * that crosses the whole pixel. So it is cut straight there, where the cap has the area of a half circle: pi / 4 of
- * half the width. */
+ * that crosses the whole pixel. So the line is cut straight at a position where the cap has the area of a half circle:
+ * pi / 4 of half the width. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_cap_until(CAMBER_COEF half_width) {
     const CAMBER_COEF more = half_width - 0.5f, past = more > 0.0f ? more : CAMBER_COEF_OF(0.0f);
     return 0.5f + 0.785398f * half_width + 1.2f * past;
 }
 
-/* The same for an end that may not be a round cap. With a pitch, the width of a line in the picture differs from pixel
- * to pixel, so it is computed from what is seen. */
+/* Returns camber_cap_until for an end that may not be a round cap. With a pitch, the width of a line in the picture
+ * differs from pixel to pixel, so it is computed from what is seen. */
 CAMBER_FN CAMBER_SAME_NAME CAMBER_COEF camber_tip_from(CAMBER_COEF_MASK is_round_cap, CAMBER_COEF half_width) {
 #if CAMBER_STROKE_PITCHED
     CAMBER_UNUSED(half_width)

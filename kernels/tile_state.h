@@ -1,9 +1,9 @@
 /* The accumulator of a tile: the state that rasterize keeps for the tile's pixels while it draws segments into them.
  *
  * Input: areas of pixels, brush by brush, from front to back. Output: the tile's pixels. Each brush is accumulated
- * first, as the fraction of light that it lets through. Then it is composited under what its level has so far: the
- * picture, the open group, or the open layer. A closed layer or group is composited under the level below it in the
- * same way.
+ * first, as the fraction of light that it lets through. Then it is composited under the colours that its level has so
+ * far: the picture, the open group, or the open layer. A closed layer or group is composited under the level below it
+ * in the same way.
  *
  * The sixteen pixels of a cell are in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
  * this file too, has sixteen of one lane. A cell that has received nothing is not stored: the sets of cells say so. */
@@ -48,7 +48,7 @@ typedef struct camber_area_state {
     int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
     camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
     int has_edges;    /* if false, nothing else is set */
-    int placed_count; /* of the tile */
+    int placed_count; /* edges of the brush in the tile */
     int kept_count;   /* edges that are here: only a cell's own, or all unless they are more than CAMBER_PLACED_MOST */
     float placed[CAMBER_PLACED_WORDS][CAMBER_KEPT_MOST + CAMBER_LANES];
 } camber_area_state;
@@ -154,8 +154,8 @@ CAMBER_FN void camber_tile_put_over(camber_tile_state *c, int i, int v, camber_r
     c->brush[i][v] *= 1.0f - area * c->now.a;
 }
 
-/* The same for a union. (nx, ny): the normal of the nearest edge. thick: the pixels in which the line has such a
- * normal. */
+/* Adds a segment's area for a union. (nx, ny): the normal of the nearest edge. thick: the pixels in which the line has
+ * a normal. */
 CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_real area, camber_mask thick,
                                      camber_real nx, camber_real ny) {
     const camber_real none = CAMBER_REAL(0.0f), edge = area * (1.0f - area);
@@ -186,7 +186,8 @@ CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
 
 /* ---- Levels ---- */
 
-/* Prepares a level that is about to be drawn in: a cell that has nothing of it yet becomes empty. */
+/* Prepares a level that is about to be drawn in: clears the level's values of the cell, unless something was drawn
+ * there before. */
 CAMBER_FN void camber_tile_take_level(camber_tile_state *c, int level, int i) {
     const camber_u64 bit = (camber_u64)1 << i;
     if (c->touched[level] & bit)
@@ -214,12 +215,12 @@ CAMBER_FN camber_real camber_tile_through(const camber_tile_state *c, int level,
     return is_new ? CAMBER_REAL(1.0f) : c->level[level][i][3][v];
 }
 
-/* Adds to what is stored. */
+/* Adds a value to the stored one, or stores it if it is the first. */
 CAMBER_FN void camber_tile_add(camber_real *stored, camber_real more, int is_new) {
     *stored = is_new ? more : *stored + more;
 }
 
-/* Composites what the brush has accumulated in a vector under what its level has. */
+/* Composites the brush's accumulated coverage of a vector under the colours of its level. */
 CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, int v, int is_new) {
     camber_real area = 1.0f - c->brush[i][v];
     if (c->now.mode == CAMBER_BRUSH_UNION)
@@ -265,7 +266,7 @@ CAMBER_FN camber_real camber_tile_covered(const camber_tile_state *c, int level,
     return 1.0f - c->level[level][i][3][v];
 }
 
-/* Composites a layer or a group under what the level below has. */
+/* Composites a layer or a group under the colours of the level below. */
 CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float opacity) {
     const int below = level == CAMBER_LAYER && c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
     for (camber_u64 left = c->touched[level]; left; left &= left - 1) {
@@ -321,7 +322,7 @@ CAMBER_FN void camber_tile_use_ext(camber_tile_state *c, camber_brush_ext brush_
     }
 }
 
-/* Composites such colours of a vector directly under what the level has. The level must have been prepared. */
+/* Composites a vector of these colours directly under the colours of the level. The level must have been prepared. */
 CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber_real area, const camber_real *color) {
     const int level = camber_tile_level(c);
     const camber_real through = c->level[level][i][3][v], seen = through * area * c->now.a;
@@ -336,7 +337,7 @@ CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber
     }
 }
 
-/* Counts a segment of such colours that was drawn into a cell; whole: the cell is inside the stroke. */
+/* Counts a segment with these colours that was drawn into a cell; whole: the cell is inside the stroke. */
 CAMBER_FN void camber_tile_count_colors(camber_tile_state *c, int i, int whole) {
     const int level = camber_tile_level(c);
     if (++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL && !whole)

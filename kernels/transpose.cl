@@ -5,7 +5,7 @@
 
 #include "segment.h"
 
-/* Returns the lanes of two vectors alternately: those of their lower or of their upper halves. */
+/* Interleaves the lanes of two vectors: those in their lower halves, or those in their upper halves. */
 static inline camber_real put_together(camber_real a, camber_real b, int upper) {
 #if CAMBER_LANES == 1
     return upper ? b : a;

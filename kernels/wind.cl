@@ -1,8 +1,8 @@
 /* wind: computes the winding numbers of the rings of each polygon at the corners of tiles, from the edges that cross
  * the tops of rows of tiles. A work-item takes a row.
  * Reads edges, as setup writes them, starts[tiles + rows + 1], lists[starts[tiles + rows]]. Writes
- * crossings[CAMBER_CROSSING_WORDS * m], m being the length of all rows' lists: those of a row are where its list is
- * among these. Writes ends[rows], where the crossings of each row end. */
+ * crossings[CAMBER_CROSSING_WORDS * m], m being the length of all rows' lists: the crossings of a row have the same
+ * positions as its list. Writes ends[rows], where the crossings of each row end. */
 #include "area.h"
 
 CAMBER_KERNEL(1, wind,

@@ -1,4 +1,4 @@
-// Adds 1 of 255 for each fragment, with coverage or without.
+// Adds 1/255 for each fragment, whether it has coverage or not.
 precision mediump float;
 
 layout(location = 0) out vec4 o_color;

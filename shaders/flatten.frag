@@ -1,13 +1,13 @@
-// Puts a flattened layer onto the picture, or fills it.
+// Composites a flattened layer onto the picture, or fills the picture with a colour.
 //
-//     COVERAGE  the layer has one channel, coverage, and takes a colour
-//     UNION     the layer has the four sums that stroke.frag writes, and takes a colour
-//     MASKED    the layer has colours that may be translucent by themselves, and a second texture has their alphas, so
-//               that a line that lies on itself shows once
-//     FILL      there is no layer but one colour; images.frag fills with images
+//     COVERAGE  the layer has one channel, its coverage, and is drawn in a colour
+//     UNION     the layer has the four sums that stroke.frag writes, and is drawn in a colour
+//     MASKED    the layer has colours that may themselves be translucent, and a second texture has their alphas, so
+//               that a line that overlaps itself is seen once
+//     FILL      there is no layer, only one colour; images.frag fills with images
 //     FLIPPED   the layer's last row comes first
 //
-// With none of them the layer has colours of its own, and takes an opacity.
+// With none of these, the layer has colours of its own and is drawn with an opacity.
 precision highp float;
 precision highp int;
 
@@ -19,7 +19,7 @@ uniform mediump sampler2D u_layer;
 #if MASKED
 layout(binding = 2) uniform mediump sampler2D u_alphas;
 #endif
-uniform vec4 u_color; // premultiplied; with colours of its own, opacity in all four
+uniform vec4 u_color; // premultiplied; if the layer has colours of its own, the opacity in all four
 
 layout(location = 0) out mediump vec4 o_color;
 

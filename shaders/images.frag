@@ -3,12 +3,12 @@ precision highp float;
 precision highp int;
 
 layout(binding = 3) uniform mediump sampler2D u_atlas;
-uniform vec4 u_image_rect;       // in the atlas: the corner of the image, and its size
-uniform vec2 u_mean;             // where it is one texel
-uniform vec2 u_origin;           // of the area in the picture, px
-uniform vec2 u_first;            // where a corner of an image lies, px
-uniform vec2 u_axis_x, u_axis_y; // images a px, along the image's x and y
-uniform vec4 u_eye;              // as stroke.vert has it. 0: the picture is seen from above
+uniform vec4 u_image_rect;       // the corner of the image in the atlas, and its size
+uniform vec2 u_mean;             // where the atlas has the image as a single texel, its mean colour
+uniform vec2 u_origin;           // position of the area in the picture, px
+uniform vec2 u_first;            // position of a corner of an image, px
+uniform vec2 u_axis_x, u_axis_y; // images per px, along the image's x and y
+uniform vec4 u_eye;              // as in stroke.vert. 0: the camera has no pitch
 uniform vec4 u_color; // premultiplied
 
 layout(location = 0) out mediump vec4 o_color;

@@ -1,73 +1,75 @@
-// The coverage of a pixel by its segment's part of a stroke.
+// Computes how much of a pixel its segment's part of a stroke covers.
 //
-// A software rasterizer runs every branch, so each of these is 0 or 1 at build time, and a frame pays for what it has:
+// A software rasterizer runs every branch, so each of these is 0 or 1 at build time, and a frame pays only for what it
+// uses:
 //
-//     LINEAR       coverage is a ramp one pixel wide, in place of the exact area
+//     LINEAR       coverage is a ramp one pixel wide, instead of the exact area
 //     SHARP_JOINS  some joins are miters or bevels          FLAT_ENDS  some caps or joins are flat
-//     TIPS         some round caps are of thin strokes      THIN       some strokes have both edges in a pixel
+//     TIPS         some thin strokes have round caps        THIN       some strokes have both edges in a pixel
 //     GAP          some strokes are two rails               BLUR       some strokes fade at their edges
-//     DASH         some strokes are dashed                  TRIM       some strokes are drawn in part
-//     RAMP         some change their colour along them      PATTERN    some are drawn with images
-//     COUNT        adds 1 of 255 in place of the colour; fragments without coverage write nothing, no stencil either
-//     UNION        writes sums for flatten.frag's union: the edge's normal times a (1 - a) and the area a add up over
-//                  the fragments of a pixel; a once more is gathered one over the other
-//     MASK         colours that are translucent by themselves replace what lies below as far as they cover the pixel;
-//                  their alpha goes to a second target
-//     PITCHED      the plane of the lines is seen at an angle: lengths lie in the plane, and each edge by itself
-//                  becomes one of the picture
+//     DASH         some strokes are dashed                  TRIM       some strokes are drawn only in part
+//     RAMP         some strokes change colour along them    PATTERN    some strokes are drawn with images
+//     COUNT        adds 1/255 instead of the colour; fragments without coverage write nothing, not even the stencil
+//     UNION        writes sums for flatten.frag's union: the edge's normal times a (1 - a), and the area a, add up over
+//                  the fragments of a pixel; the last channel gets a again, blended over what is there
+//     MASK         colours that are themselves translucent replace what is below as far as they cover the pixel;
+//                  their alpha is written to a second target
+//     PITCHED      the plane of the lines is seen at an angle: lengths are px of the plane, and each edge separately
+//                  becomes an edge of the picture
 //
-// For the same reason stroke.vert computes what is constant over a segment. The formulas are those of the kernels, in
-// kernels/features.h and what it includes; here is only where their numbers come from.
+// For the same reason stroke.vert computes everything that is constant over a segment. The formulas are those of the
+// kernels, in kernels/features.h and the files that it includes; this file only supplies their inputs.
 precision highp float;
 precision highp int;
 
 #define CAMBER_STROKE_PITCHED PITCHED
 #define MEASURED (DASH || TRIM || RAMP || PATTERN)
 
-flat in vec4 v_segment; // A in the area, of PITCHED from where the camera looks at; direction
-flat in vec4 v_shape;   // length, half width; at A and B: where a flat end lies, px past it
-flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine > 0 where it turns towards +y
-flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from here on, px past the end
+flat in vec4 v_segment; // A in the area, or with PITCHED from the point that the camera looks at; direction
+flat in vec4 v_shape;   // length, half width; at A and B: where a flat end is, px past the end
+flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine is > 0 if the line turns towards +y
+flat in vec4 v_rest;    // slope and curve of the edge; at A and B: how far past the end the segment draws, px
 #if TIPS
 flat in vec2 v_tips; // at A and B: where the round cap of a thin line ends, px past the end
 #endif
 #if SHARP_JOINS
-// Camber_end at A and << 3 at B; bits of floats: round from here on at A, at B, px past the end
+// camber_end at A, and << 3 that at B; as the bits of floats, how far past A and B the ends begin to be round, px
 flat in highp uvec3 v_ends;
 #endif
 flat in mediump vec4 v_color;
 #if GAP || BLUR
-flat in vec2 v_band; // half the gap between the rails, below 0 where there is none; blur; px
+flat in vec2 v_band; // half the gap between the rails, below 0 if there is none; blur; px
 #endif
 
 #if MEASURED
-// At A: how far along the line, px, and how fast that grows; length of the line; period of dashes, px
+// How far along the line A is, px, and the arc length per px; the line's length; the period of dashes, px
 flat in vec4 v_measure;
 #endif
 #if DASH
-flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are, and 1 where they are round
+flat in highp ivec2 v_dashes; // the first dash's texel; twice the number of dashes, and 1 more if they are round
 #endif
 #if TRIM
-flat in vec2 v_trim; // from where to where the line is not drawn, px along it
+flat in vec2 v_trim; // the line is not drawn between these, px along it
 #endif
 #if RAMP
-flat in highp ivec2 v_ramp; // the texel of the first stop that the segment sees; how many it does. 0: no ramp
+flat in highp ivec2 v_ramp; // the texel of the first stop that the segment sees; how many it sees. 0: no ramp
 #endif
 #if DASH || RAMP
 uniform highp sampler2D u_rows;
 #endif
 #if PATTERN
-flat in vec4 v_image;   // where the image lies in the texture, how far it reaches
-// At A: how far in the image, and how fast that grows, in images; tangents of half the turns at A, at B
+flat in vec4 v_image;   // position of the image in the texture, and its size there
+// How far into the image A is, and the images per px; the tangents of half the turns at A and at B
 flat in vec4 v_pattern;
 layout(binding = 3) uniform mediump sampler2D u_atlas;
 #endif
 #if PITCHED
-flat in vec2 v_end; // B, as A
-// Joins narrower than a pixel: what lies past them in the picture, and 0; to 1 where they are wide
+flat in vec2 v_end; // B, as A in v_segment
+// The cuts of the joins in the picture; the last component is 0 if a join is narrower than a pixel, up to 1 if it is
+// wide
 flat in vec4 v_cut_a, v_cut_b;
 uniform vec2 u_origin;
-uniform vec4 u_eye; // as stroke.vert has them
+uniform vec4 u_eye; // as in stroke.vert
 #endif
 
 layout(location = 0) out mediump vec4 o_color;
@@ -75,8 +77,8 @@ layout(location = 0) out mediump vec4 o_color;
 layout(location = 1) out mediump vec4 o_alpha;
 #endif
 
-// The formulas read these while they run: a dash from where to where, px; a stop's share of the line, and its colour; the
-// image's colour at a share of its width and height.
+// The formulas call these: the beginning and end of a dash, in px; the position of a stop, as a fraction of the line,
+// and its colour; the image's colour at fractions of its width and height.
 #if DASH || RAMP
 vec4 row_texel(int i) {
     return texelFetch(u_rows, ivec2(i & 2047, i >> 11), 0);
@@ -116,7 +118,7 @@ vec4 image_texel(vec2 at) {
 #include "images.h"
 #endif
 
-// The coefficients of the fragment's segment.
+// Returns the coefficients of the fragment's segment.
 camber_edge edge_here() {
     camber_edge p;
     p.ux = v_segment.z;
@@ -177,8 +179,8 @@ camber_edge edge_here() {
     return p;
 }
 
-// Where the fragment lies. The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between
-// them lies a strip, a tie wide, that both draw, so that neither leaves a hole.
+// Returns the position of the fragment. The two sides of a split end know the turn only to 16 bits, at most 4 / 65534
+// off. So both draw a strip between them, as wide as the tie, and there is no hole.
 camber_pixel pixel_here(camber_edge p) {
     camber_pixel at;
     vec2 u = v_segment.zw;
@@ -202,7 +204,7 @@ camber_pixel pixel_here(camber_edge p) {
 #if PITCHED
     at.tie = 6e-5 * (abs(at.y) + depth);
 #else
-    // Triangles that are cut along the bisector lie on multiples of 1/256 px.
+    // The vertices of triangles that are cut along the bisector are rounded to multiples of 1/256 px.
     at.tie = 4e-5 * p.half_width + (METHOD == 0 ? 4e-5 : 1.0 / 128.0);
 #endif
     at.fa = -(p.ca * at.past_a + p.sa * at.y);
@@ -211,7 +213,7 @@ camber_pixel pixel_here(camber_edge p) {
     return at;
 }
 
-// The coefficients of the line's features.
+// Returns the coefficients of the line's features.
 camber_extras extras_here() {
     camber_extras e;
     e.features = 0u;
@@ -253,7 +255,7 @@ camber_extras extras_here() {
 #if RAMP
 vec4 ramp_here(camber_edge p, camber_extras e, camber_pixel at) {
     float color[4], extent = camber_extent_along(p, at), last = stop_at(e.stop_count - 1u), first = stop_at(0u);
-    // Mostly there are only two, far apart.
+    // Usually there are only two stops, far apart.
     if (e.stop_count < 3u && (last - first) * e.total > 8.0 * extent)
         camber_ramp_between(e, 1u, at.along, color);
     else
@@ -287,11 +289,11 @@ void main() {
     camber_extras e = extras_here();
     float area = camber_stroke_area(p, e, e.features, at, false);
 #if (GAP || BLUR || MEASURED) && METHOD == 2 && !PITCHED
-    // Bodies of fans overlap on the inner side of a join: what one leaves open the other must not fill.
+    // Bodies of fans overlap on the inner side of a join: what one segment leaves open, the other must not fill.
     area = (at.fa < -at.tie && at.y * p.sa > 0.0) || (at.fb > at.tie && at.y * p.sb > 0.0) ? 0.0 : area;
 #endif
 #if COUNT
-    if (area < 1e-5) // of an edge through its centre: there GPUs differ in the last bits
+    if (area < 1e-5) // GPUs differ in the last bits if an edge passes through the pixel's centre
         discard;
     o_color = vec4(1.0 / 255.0, 0.0, 0.0, 0.0);
 #elif UNION

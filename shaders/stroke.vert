@@ -1,9 +1,9 @@
 // Makes the vertices of strokes. A vertex reads a record of the mesh and its neighbours (camber_record in
-// camber_proof.h; src/tess/expand.c does the same in C), and hands all that is constant over its segment to the
-// fragments.
+// camber_proof.h; src/vertices/expand.c does the same in C), and passes everything that is constant over its segment to
+// the fragments.
 //
-// METHOD is camber_method. gl_VertexID is, in strips, 2 * record, and 1 more for the right edge; of kite and fan it is
-// record << 7 | corner. With PITCHED it is 6 * record + corner of two triangles, whatever the method.
+// METHOD is camber_method. In strips, gl_VertexID is 2 * record, and 1 more for the right edge; with kite and fan it is
+// record << 7 | corner. With PITCHED it is 6 * record + the corner of two triangles, whatever the method.
 precision highp float;
 precision highp int;
 
@@ -13,27 +13,27 @@ precision highp int;
 #include "pitch.h"
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
-// Tables of rows, TEXELS_A_ROW texels a row, then the side table of dashes and ramps. The texels of a row:
-//     0  half the width px, -1: not drawn; the step of a fan; translation x, y px
+// Tables of rows, TEXELS_A_ROW texels per row, then the side table of dashes and ramps. The texels of a row:
+//     0  half the width, px, or -1 if the row is not drawn; the step of a fan; translation x, y, px
 //     1  premultiplied colour
-//     2  half the gap px, below 0: none; blur px, below 0: by a smooth step; 0; 0
-//     3  dashes: first texel in the side table; twice their count, and 1 more where they are round; period px; 0
-//     4  two shares of the line, between which it is not drawn; its ramp's first texel in the side table; stops of that
+//     2  half the gap, px, or below 0 if there is none; blur, px, or below 0 for a smooth step; 0; 0
+//     3  dashes: first texel in the side table; twice their count, and 1 more if they are round; period, px; 0
+//     4  two fractions of the line, between which it is not drawn; its ramp's first texel in the side table; stop count
 //     5  its image in the atlas: corner x, y and size x, y, in texture coordinates; 0: no image
-//     6  px of the line that one image takes; 0; 0; 0
+//     6  length of the line that one image takes, px; 0; 0; 0
 uniform highp sampler2D u_rows;
-uniform vec2 u_origin;          // of the area in the picture, px
-uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the area
-uniform int u_table;            // kite, fan: number of the table. Others: bits of gl_VertexID below that number
+uniform vec2 u_origin;          // position of the area in the picture, px
+uniform vec2 u_corner;          // position of the viewport in the picture, px; the viewport reaches past the area
+uniform int u_table;            // kite, fan: the table's number. Others: how many bits of gl_VertexID are below it
 uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
 uniform int u_side_table;       // first texel of the side table
 #if PITCHED
-uniform vec4 u_eye;             // half the picture's size, px; cosine of the pitch; depth lost a px towards the viewer
+uniform vec4 u_eye;             // half the picture's size, px; cosine of the pitch; depth lost per px to the viewer
 #endif
-uniform int u_stride;           // texels a record: 2 where it has its arc length, else 1
+uniform int u_stride;           // texels per record: 2 if it has an arc length, else 1
 
-// stroke.frag says what each is.
+// stroke.frag describes these.
 flat out vec4 v_segment;
 flat out vec4 v_shape;
 flat out vec4 v_turns;
@@ -80,7 +80,7 @@ Record record_at(int i) {
 }
 
 #if MEASURED
-// How far along its line a record lies, and how long that is.
+// Returns how far along its line a record is, and how long the line is.
 vec2 measure_at(int i) {
     return uintBitsToFloat(texelFetch(u_records, u_stride * i + 1).xy);
 }
@@ -91,7 +91,8 @@ vec4 row_texel(int i) {
 }
 
 #if RAMP
-// How many stops of a ramp lie up to a place px along a line of a length. ramp: its first texel, and its stops.
+// Returns how many stops of a ramp are at or before a position on a line of length len, in px. ramp: its first texel,
+// and how many stops it has.
 int stops_up_to(float place, ivec2 ramp, float len) {
     int low = 0, high = ramp.y;
     while (low < high) {
@@ -104,7 +105,8 @@ int stops_up_to(float place, ivec2 ramp, float len) {
 }
 #endif
 
-// How a segment ends. With kite and fan the triangles say what belongs to a segment; with PITCHED they do not.
+// Returns how a segment ends. With kite and fan the triangles decide what belongs to a segment; with PITCHED they do
+// not.
 uint end_of(uint join) {
 #if PITCHED
     return CAMBER_END_KIND(camber_segment_end(join));
@@ -128,7 +130,8 @@ vec2 seen_of(vec2 p) {
     return seen;
 }
 
-// An end and its cut. soon: the bit of the join that says that the line ends with the segment. Returns where it is flat.
+// Computes the cut of an end. soon: the bit of the join that says that the line ends with the segment. Returns where
+// the end is flat.
 float cut_of(vec2 p, vec2 u, float len, float half_width, uint join, uint soon, vec2 turn, float turns,
              out camber_pitch_cut cut) {
     bool own;
@@ -143,8 +146,8 @@ float end_reach(uint join, float half_width) {
     return camber_pitch_reach(camber_segment_end(join), c, s, half_width);
 }
 
-// A corner of what the segment's part of the stroke takes of the picture and half a pixel around it, px from its
-// middle: a trapezoid along the segment as it is seen. false: nothing is seen.
+// Finds a corner of a trapezoid in the picture, along the segment as it is seen, that contains the segment's part of
+// the stroke and half a pixel around it. place: in px from the picture's middle. Returns false if nothing is seen.
 bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, int corner, out vec2 place) {
     float from = -end_reach(join_a, half_width), to = len + end_reach(join_b, half_width);
     bool right = (corner & 1) != 0, far = corner > 1, all_over;
@@ -163,7 +166,8 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
     float begin = min(min(left_a.x, left_b.x), min(right_a.x, right_b.x)) - CAMBER_PAD_PX;
     float end = max(max(left_a.x, left_b.x), max(right_a.x, right_b.x)) + CAMBER_PAD_PX;
     vec2 near_side = right ? right_a : left_a, far_side = right ? right_b : left_b;
-    float low = right ? -1.0 : 1.0; // of the two sides in the picture, as in the plane
+    // the sign of the side across the axis: the sides are in the same order in the picture as in the plane
+    float low = right ? -1.0 : 1.0;
     float slope = (far_side.y - near_side.y) / max(abs(far_side.x - near_side.x), 1e-3) *
                   sign(far_side.x - near_side.x);
     float at = far ? end : begin;
@@ -179,7 +183,7 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
 #endif
 
 #if !PITCHED
-// camber_flat_end_from and camber_owner_from of an end. Triangles that are cut along the bisector bound it.
+// Returns camber_flat_end_from and camber_owner_from for an end. Triangles that are cut along the bisector bound it.
 vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width) {
 #if METHOD == 2
     return vec2(camber_flat_from(end_of(join), half_width), CAMBER_NEVER_PX);
@@ -192,7 +196,7 @@ vec2 flat_and_owner(uint join, uint soon, vec2 turn, float len, float half_width
 }
 #endif
 
-// Computes all that is constant over a segment.
+// Computes everything that is constant over a segment.
 void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
     camber_half_turn(camber_turn_unpack(join_a), v_turns.x, v_turns.y);
@@ -226,7 +230,7 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
 }
 
 #if PITCHED
-// Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
+// Whether a segment from the record before ends at a record; with kite and fan, a dot ends its own segment.
 bool ends_segment(Record r) {
     uint kind = camber_join_kind(r.join);
     bool first = (r.last & CAMBER_POINT_FIRST) != 0u && (METHOD == 0 || kind != CAMBER_KIND_DOT);
@@ -236,7 +240,7 @@ bool ends_segment(Record r) {
 
 void main() {
 #if PITCHED
-    // Two triangles a record, of the segment that ends there.
+    // Each record has two triangles, for the segment that ends at it.
     int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id / 6, place_in = id - 6 * i;
     int seen_corner = place_in < 3 ? place_in : 6 - place_in;
     Record here = record_at(i);
@@ -246,14 +250,15 @@ void main() {
     int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id >> 1;
     bool right = (id & 1) != 0;
     Record here = record_at(i);
-    if ((here.last & CAMBER_RECORD_BREAK) != 0u) { // the last vertex of the strip before, then the first of that behind
+    // a break repeats the last vertex of the strip before it, then the first vertex of the strip after it
+    if ((here.last & CAMBER_RECORD_BREAK) != 0u) {
         i += right || i == 0 ? 1 : -1;
         right = !right;
         here = record_at(i);
     }
     float side = right ? -1.0 : 1.0;
     bool goes_out = camber_record_starts(here.last) && !camber_edge_is_shared(here.join, here.last, side);
-    bool is_again = (here.last & CAMBER_RECORD_START) != 0u; // the end lies between
+    bool is_again = (here.last & CAMBER_RECORD_START) != 0u; // the end is between them
     int o = goes_out ? i + 1 : is_again ? i - 2 : i - 1;
 #else
     int table = u_table, i = gl_VertexID >> 7;
@@ -276,7 +281,8 @@ void main() {
 #if PITCHED
     bool is_drawn = ends_segment(here);
 #else
-    // Along the segment from its point, bounded by limit px, and across: in units of the reach.
+    // How far from its point the vertex is along the segment, limited to `limit` px, and across it, in units of the
+    // reach.
     float along = camber_edge_along(here.join, goes_out ? -1.0 : 1.0, side, uint(METHOD));
     float across = side, limit = camber_edge_limit(here.join, side);
 #if METHOD != 0
@@ -321,7 +327,7 @@ void main() {
 #if RAMP
     v_ramp = ivec2(progress.zw) + ivec2(u_side_table, 0);
 #if !PITCHED
-    // Only the stops that a pixel of the segment may see.
+    // Only the stops that a pixel of the segment may see are kept.
     int from = max(stops_up_to(min(measure_a.x, measure_b.x) - 1.0, v_ramp, measure_a.y) - 1, 0);
     int to = min(stops_up_to(max(measure_a.x, measure_b.x) + 1.0, v_ramp, measure_a.y) + 1, v_ramp.y);
     v_ramp = ivec2(v_ramp.x + 2 * from, to - from);
@@ -334,7 +340,8 @@ void main() {
     v_pattern = vec4(first / one_px, v_measure.y / one_px, camber_image_tangent(v_turns.x, v_turns.y),
                      camber_image_tangent(v_turns.z, v_turns.w));
 #endif
-    // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
+    // The triangles of a row that is not drawn have no area; outside the viewport they would have to be clipped, which
+    // costs time.
 #if PITCHED
     place += u_eye.xy;
     half_width = is_drawn ? half_width : -1.0;

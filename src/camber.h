@@ -17,7 +17,7 @@
  *
  * Threads. Only one thread at a time may use a context and the objects made from it. Different contexts are
  * independent: several threads may each create and use their own at the same time.
- * The only global state is that of the drivers and of GDAL; camber holds a lock while it sets them up for the first
+ * The only global state belongs to the drivers and to GDAL; camber holds a lock while it sets them up for the first
  * time. A program that calls them itself must not do so during camber's first call. Drivers read and set environment
  * variables when camber first looks for devices: until that is done, no other thread may read or change the
  * environment.
@@ -60,7 +60,7 @@ typedef enum camber_status {
     CAMBER_ERROR_NOT_FOUND, /* no such file */
     CAMBER_ERROR_DEVICE,    /* there is no usable OpenCL device or GL back end, or a program does not build */
     CAMBER_ERROR_IO,        /* reading or writing failed, for example because the disk is full */
-    CAMBER_ERROR_LIMIT,     /* there is more than 32-bit vertex indices, a buffer or a render target can hold */
+    CAMBER_ERROR_LIMIT,     /* more than 32-bit vertex indices, a buffer or a render target can hold */
 } camber_status;
 
 /* A short English name of the status; never NULL. */
@@ -69,7 +69,7 @@ CAMBER_API const char *camber_status_get_name(camber_status status);
 /* The version of the library in use, as "0.1.0". */
 CAMBER_API const char *camber_version(void);
 
-/* ---- Budget: what files may make a run take ------------------------------------------------------- */
+/* ---- Budget: how much a run may take because of its files ----------------------------------------- */
 
 /* A small file can ask for more memory than the machine has, so a budget sets limits. A call that would exceed one
  * fails with CAMBER_ERROR_MEMORY or CAMBER_ERROR_LIMIT, and the log says which limit it was. */
@@ -82,7 +82,7 @@ typedef struct camber_budget_desc {
      * asked for. */
     uint64_t memory_bytes;
     /* The following limits apply to each set of features: */
-    uint64_t tiles;  /* vector tiles that it looks for. 0: 262144 */
+    uint64_t tiles;  /* vector tiles that are looked for. 0: 262144 */
     uint64_t steps;  /* steps that databases may take to answer, plus 4096 per tile. 0: 2^26, a few seconds */
     uint32_t unfold; /* inflate ratio: bytes that tiles may unpack to for each byte of their files, plus 4 MB. 0: 32 */
 } camber_budget_desc;
@@ -101,8 +101,8 @@ CAMBER_API uint64_t camber_budget_get_most_bytes(camber_budget *budget);
 
 /* ---- Access: what files may reach ------------------------------------------------------------------ */
 
-/* camber opens the files that the caller names, those that a style names, and the companion files of a format (.shx,
- * .dbf, .prj, -wal). It never opens a link to a device or a pipe, and it downloads nothing. */
+/* camber opens the files that the caller names, the files that a style names, and the companion files of a format
+ * (.shx, .dbf, .prj, -wal). It never opens a link to a device or a pipe, and it downloads nothing. */
 typedef struct camber_access {
     bool remote; /* input files may be on the network, or refer to it */
     bool vrt;    /* input files may refer to other files (VRT) */
@@ -116,7 +116,7 @@ typedef struct camber_access {
 /* ---- Context: allocator, log, cache -------------------------------------------------------------- */
 
 typedef enum camber_log_level {
-    CAMBER_LOG_ERROR = 0, /* the message of a failure that a status reports */
+    CAMBER_LOG_ERROR = 0, /* the message of a failure, which a status reports too */
     CAMBER_LOG_WARNING,   /* something was left out or repaired; logged once per cause */
     CAMBER_LOG_INFO,      /* what was chosen and how long it took */
 } camber_log_level;
@@ -129,7 +129,7 @@ typedef void camber_log_fn(void *user, camber_log_level level, const char *messa
 typedef void camber_progress_fn(void *user, const char *stage, double fraction);
 
 typedef struct camber_context_desc {
-    /* Works like realloc, and frees the block if the size is 0. NULL: the C library's. */
+    /* Works like realloc, and frees the block if the size is 0. NULL: the C library's functions. */
     void *(*reallocate)(void *user, void *block, size_t size_bytes);
     void *allocator_user;
     camber_log_fn *log; /* NULL: messages are discarded */
@@ -162,7 +162,7 @@ typedef struct camber_polylines_desc {
     const uint32_t *offsets; /* polyline_count + 1 indices into points, ascending, from 0 to point_count */
     size_t polyline_count;
     const uint32_t *rows; /* polyline_count indices into the strokes, below 2^24. NULL: all 0 */
-    /* false: a polyline whose first and last points are equal is a ring: it has a join where they meet.
+    /* false: a polyline whose first and last points are equal is a ring, with a join where they meet.
      * true: such a polyline has caps at its ends like any other. */
     bool keep_open;
 } camber_polylines_desc;
@@ -171,8 +171,8 @@ typedef struct camber_polylines_desc {
 typedef struct camber_polylines_stats {
     size_t polylines;       /* as given */
     size_t points;          /* as given */
-    size_t kept_points;     /* that are tessellated */
-    size_t kept_segments;   /* that are tessellated */
+    size_t kept_points;     /* points that are tessellated */
+    size_t kept_segments;   /* segments that are tessellated */
     size_t rings;           /* closed polylines */
     size_t dots;            /* polylines with one distinct point, which round and square caps draw as a dot */
     size_t empty_polylines; /* polylines without a point */
@@ -207,9 +207,9 @@ typedef struct camber_areas_desc {
     const uint32_t *rows; /* one per area, as in camber_polylines_desc. NULL: all 0 */
 } camber_areas_desc;
 
-/* Makes a closed polyline of each ring, for passes whose paints have a fill. The call orients outer rings clockwise as
- * seen, judged by their signed area, and holes counter-clockwise. It drops invalid points and continues the ring
- * without them. A ring with fewer than three distinct points has no area, but can still be drawn as a line.
+/* Makes a closed polyline from each ring, for passes whose paints have a fill. The call orients outer rings clockwise
+ * as seen, judged by their signed area, and holes counter-clockwise. It drops invalid points and connects their
+ * neighbours. A ring with fewer than three distinct points has no area, but can still be drawn as a line.
  * Returns the errors of camber_polylines_create, and CAMBER_ERROR_INPUT if the ring indices do not ascend from 0 to
  * ring_count. */
 CAMBER_API camber_status camber_areas_create(camber_context *context, const camber_areas_desc *desc,
@@ -268,9 +268,10 @@ typedef struct camber_device_info {
     bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
-/* Sets *info to the n-th device, counted from 0, of those that match names, or to NULL past the last. match is as in
- * camber_device_desc; NULL: all. The first call for a context looks for devices. The infos live as long as the context.
- * Returns CAMBER_ERROR_MEMORY, also if the process has too little address space for the drivers (ulimit -v). */
+/* Sets *info to the n-th device, counted from 0, of the devices that match names, or to NULL past the last one. match
+ * is as in camber_device_desc; NULL: all devices. The first call for a context looks for devices. The infos live as
+ * long as the context. Returns CAMBER_ERROR_MEMORY, also if the process has too little address space for the drivers
+ * (ulimit -v). */
 CAMBER_API camber_status camber_device_list(camber_context *context, const char *match, size_t n,
                                             const camber_device_info **info);
 
@@ -280,7 +281,7 @@ typedef enum camber_gl_display { CAMBER_GL_DISPLAY_EGL, CAMBER_GL_DISPLAY_GLX } 
 typedef struct camber_gl_handles {
     intptr_t context, display;
     camber_gl_display display_kind;
-    uint64_t largest_buffer_bytes; /* the largest that the context's shaders can read. 0: no limit */
+    uint64_t largest_buffer_bytes; /* the largest buffer that the context's shaders can read. 0: no limit */
 } camber_gl_handles;
 
 typedef struct camber_device_desc {
@@ -306,8 +307,9 @@ typedef struct camber_device_desc {
      * back, or pictures.
      * A mesh is made in parts of an eighth of the limit or less. A part that does not fit is tessellated again when it
      * is read or drawn, to the same bytes and pixels. A polyline may take half of the limit, at about 50 bytes per
-     * visible point. A renderer that draws in OpenCL reserves a quarter of the limit; if that is less than 4 MB, it
-     * takes 4 MB in addition to the limit instead. A picture that needs more is drawn in slices, to the same bytes.
+     * visible point. A renderer that draws in OpenCL reserves a quarter of the limit; if a quarter is less than 4 MB,
+     * the renderer takes 4 MB in addition to the limit instead. A picture that needs more is drawn in slices, to the
+     * same bytes.
      * 0: three quarters of the device's memory, or no limit if the device uses the host's memory. */
     uint64_t memory_bytes;
     /* The surface whose renderers will draw the device's meshes in GL. Zero: none, so buffers are copied. */
@@ -317,9 +319,9 @@ typedef struct camber_device_desc {
 typedef struct camber_device camber_device;
 
 /* Opens a device. desc may be NULL.
- * Returns CAMBER_ERROR_DEVICE (no platform, no matching device, or fewer than number asks for), CAMBER_ERROR_ARGUMENT
- * (an invalid work-group size or number of lanes, a largest buffer below 4096 bytes, a memory limit below 65536),
- * CAMBER_ERROR_MEMORY.
+ * Returns CAMBER_ERROR_DEVICE (no platform, no matching device, or fewer matching devices than number),
+ * CAMBER_ERROR_ARGUMENT (an invalid work-group size or number of lanes, a largest buffer below 4096 bytes, a memory
+ * limit below 65536), CAMBER_ERROR_MEMORY.
  * No kernel is built here: the kernels of a method are built, or loaded from the cache, when it is first used. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_device **device);
@@ -334,11 +336,11 @@ typedef struct camber_warm_result {
 } camber_warm_result;
 
 /* Builds all kernels that the device can be asked for, and saves those that the cache lacks, so that later runs can
- * load them. They go to the folder camber-kernels next to the library, which all users of the machine can read, or, if
- * that folder cannot be written, to the user's cache. Kernels for other devices, drivers or versions of camber are left
- * alone.
- * share is less than shares. Several processes can build at the same time, each its own share. Share 0 of 1 is
- * everything. Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
+ * load them. They are saved in the folder camber-kernels next to the library, which all users of the machine can read,
+ * or, if that folder cannot be written, to the user's cache. Kernels for other devices, drivers or versions of camber
+ * are not touched.
+ * share is less than shares. Several processes can build at the same time, each of them its own share. Share 0 of 1 has
+ * all programs. Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
                                             camber_warm_result *result);
@@ -391,7 +393,7 @@ CAMBER_API bool camber_surface_may_be_hardware(const camber_surface_desc *desc);
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
-/* Returns the surface's GL context for camber_device_desc.gl. If surface is NULL, they are zero. */
+/* Returns the surface's GL context for camber_device_desc.gl. If surface is NULL, the handles are zero. */
 CAMBER_API camber_gl_handles camber_surface_get_handles(const camber_surface *surface);
 /* Releases the GL context on the calling thread, so that another thread can use the surface. */
 CAMBER_API void camber_surface_release(camber_surface *surface);
@@ -408,7 +410,7 @@ typedef enum camber_sharing {
     CAMBER_SHARING_AUTO = 0,  /* the first of the following that works */
     CAMBER_SHARING_GL,        /* cl_khr_gl_sharing: OpenCL writes the GL buffer on the GPU */
     CAMBER_SHARING_ZERO_COPY, /* the OpenCL buffer is a persistent mapping of the GL buffer */
-    CAMBER_SHARING_COPY,      /* through host memory; works anywhere */
+    CAMBER_SHARING_COPY,      /* copies through host memory, which works anywhere */
 } camber_sharing;
 
 /* How frames are drawn. */
@@ -429,8 +431,8 @@ typedef struct camber_renderer_desc {
 typedef struct camber_renderer camber_renderer;
 
 /* Makes a renderer, which draws frames of the meshes that are created for it.
- * surface may be NULL if OpenCL draws, since its pictures need no GL. If OpenCL draws and there is a surface, only
- * camber_renderer_render_texture uses it, and pixels reach it by the sharing path. desc may be NULL.
+ * surface may be NULL if OpenCL draws, since OpenCL needs no GL for pictures. If OpenCL draws and there is a surface,
+ * only camber_renderer_render_texture uses it, and pixels reach it by the sharing path. desc may be NULL.
  * Returns CAMBER_ERROR_DEVICE (the requested sharing path does not work), CAMBER_ERROR_MEMORY.
  * No shader is built here: each is built when it is first used. */
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
@@ -438,7 +440,7 @@ CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_su
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
 /* Returns the sharing path in use. CAMBER_SHARING_AUTO: there is no surface, so nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
-/* Returns what draws: GL or OpenCL, never AUTO. */
+/* Returns the rasterizer that draws: GL or OpenCL, never AUTO. */
 CAMBER_API camber_rasterizer camber_renderer_get_rasterizer(const camber_renderer *renderer);
 /* The name of a rasterizer: "auto", "gl" or "cl". */
 CAMBER_API const char *camber_rasterizer_get_name(camber_rasterizer rasterizer);
@@ -475,7 +477,7 @@ typedef enum camber_method {
 CAMBER_API const char *camber_method_get_name(camber_method method);
 
 typedef struct camber_tessellation_desc {
-    const camber_stroke *strokes; /* stroke_count rows; every row of the polylines must be less than that */
+    const camber_stroke *strokes; /* stroke_count rows; every row of the polylines must be less than stroke_count */
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* how far a fan's chord may be from its arc; at most 64 chords per half turn. 0: 0.25 */
@@ -491,9 +493,9 @@ typedef struct camber_tessellation_desc {
 typedef struct camber_mesh_info {
     camber_method method;
     bool strips;         /* triangle strips; else triangles */
-    bool has_arc_length; /* as the tessellation was asked for */
+    bool has_arc_length; /* as in the desc of the tessellation */
     /* If the mesh's renderer draws in OpenCL, it needs only points. The next three are then 0 until
-     * camber_mesh_count_joins. */
+     * camber_mesh_count_joins is called. */
     size_t record_count;      /* camber_record */
     size_t vertex_count;      /* for strips two per record, including the records between strips */
     size_t index_count;       /* for strips one per vertex, although none is stored */
@@ -513,15 +515,16 @@ typedef struct camber_mesh camber_mesh;
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh);
 CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
-/* Gets a second mesh, for the same renderer, that lives as long as this one: for what is drawn among its lines, such as
- * labels. The first call makes it. It may have a companion, too. Tessellating a mesh empties its companion.
+/* Gets a second mesh for the same renderer, which lives as long as this one, for things that are drawn among its lines,
+ * such as labels. The first call makes the companion, which may have a companion, too. Tessellating a mesh empties its
+ * companion.
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_mesh_get_companion(camber_mesh *mesh, camber_mesh **companion);
 
-/* Tessellates on the device, and replaces what the mesh held. The output is in input order, and is the same from run to
- * run, byte for byte. The mesh keeps the polylines: a second call with the same object and other strokes uploads
- * nothing. A device that uses the host's memory borrows them (zero copy): after camber_polylines_destroy their memory
- * is freed only when the mesh takes other polylines or is destroyed.
+/* Tessellates on the device, and replaces the mesh's earlier content. The output is in input order, and is the same
+ * from run to run, byte for byte. The mesh keeps the polylines: a second call with the same object and other strokes
+ * uploads nothing. A device that uses the host's memory borrows them (zero copy): after camber_polylines_destroy their
+ * memory is freed only when the mesh takes other polylines or is destroyed.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs more
  * than the largest buffer or half of the device's memory limit), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel
@@ -530,7 +533,7 @@ CAMBER_API camber_status camber_mesh_get_companion(camber_mesh *mesh, camber_mes
  * number of points. */
 CAMBER_API camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                                 const camber_tessellation_desc *desc);
-/* Returns a description of the last tessellation. Some counts are 0 until camber_mesh_count_joins (see
+/* Returns a description of the last tessellation. Some counts are 0 until camber_mesh_count_joins is called (see
  * camber_mesh_info). */
 CAMBER_API camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh);
 /* Counts the joins, triangles, records, vertices and indices of the last tessellation, unless they have been counted
@@ -559,13 +562,13 @@ typedef struct camber_dash {
 #define CAMBER_DASH_LENGTHS_MAX 128
 
 typedef struct camber_ramp_stop {
-    float place; /* a fraction of the line's length, not less than that of the previous stop */
+    float place; /* a fraction of the line's length, not less than the previous stop's */
     camber_color color;
 } camber_ramp_stop;
 
 /* Colours along a line. Between two stops, colours are interpolated premultiplied; before the first stop and after the
- * last one, the colour is that stop's. Two stops at the same position make a step, whose edge is anti-aliased by exact
- * area. */
+ * last one, the colour is that of this stop. Two stops at the same position make a step, whose edge is anti-aliased by
+ * exact area. */
 typedef struct camber_ramp {
     const camber_ramp_stop *stops; /* count of them; positions ascend and are finite, colours are finite */
     size_t count;                  /* 1 to CAMBER_RAMP_STOPS_MAX */
@@ -592,7 +595,7 @@ typedef enum camber_fill_rule {
 /* A fill for areas or for the whole picture: one colour, or one image repeated side by side. */
 typedef struct camber_fill {
     camber_color color;
-    const camber_image *image; /* drawn in place of the colour, with the colour's alpha. NULL: none */
+    const camber_image *image; /* drawn instead of the colour, with the colour's alpha. NULL: none */
     float width_px, height_px; /* the size of one copy in the picture. 0: the image's own */
     float x_px, y_px;          /* the top left corner of one copy in the picture */
     double bearing_deg;        /* bearing of the map that the copies are drawn on, as in camber_camera */
@@ -600,24 +603,24 @@ typedef struct camber_fill {
 } camber_fill;
 
 /* How the lines of a row are drawn in one pass. Dashes, trims, ramps and images need a mesh with arc lengths. Several
- * paints may point to the same dash, ramp or image. Give equal ones the same pointer: consecutive rows then share it on
- * the device. */
+ * paints may point to the same dash, ramp or image. Use the same pointer for equal ones, so that consecutive rows share
+ * them on the device. */
 typedef struct camber_paint {
-    /* 0: nothing is drawn. What is drawn, width_px or with a gap gap_px + 2 width_px, may be at most as wide as the
-     * stroke. */
+    /* 0: nothing is drawn. The drawn line is width_px wide, or gap_px + 2 width_px if it has a gap; it may be at most
+     * as wide as the stroke. */
     float width_px;
     camber_color color;
     float gap_px; /* 0: none. Otherwise the line is two rails, each width_px wide, and this is the space between them */
     float blur_px;                        /* 0: none. Otherwise edges fade inwards, over this distance plus one pixel */
     float translate_x_px, translate_y_px; /* moves the line from its polyline to where it is drawn */
-    bool smooth_blur;                     /* the blur fades by a smooth step, 3 t^2 - 2 t^3, in place of evenly */
+    bool smooth_blur;                     /* the blur fades by a smooth step, 3 t^2 - 2 t^3, instead of evenly */
     const camber_dash *dash;              /* NULL: none */
     float dash_unit_px;                   /* the unit of the dash's lengths. 0: 1 */
     /* The line is not drawn between these two fractions of its length. A trim at an end removes the cap too. If
      * trim_end is not greater than trim_start, the whole line is drawn. */
     float trim_start, trim_end;
     const camber_ramp *ramp; /* color is multiplied by it. NULL: none */
-    /* The line shows this image in place of the colour, with the colour's alpha, repeated from the start of the line. A
+    /* The line shows this image instead of the colour, with the colour's alpha, repeated from the start of the line. A
      * copy is as high as the stroke is wide, including the gap, and its top is on the right of the line's direction.
      * NULL: none. */
     const camber_image *image;
@@ -626,7 +629,7 @@ typedef struct camber_paint {
      * Consecutive areas of a pass with the same fill are one path: there is no seam where they meet or overlap, and a
      * translucent fill covers each pixel once. If the areas and lines of a pass alternate more than 64 times, or its
      * lines need more than 32 layers, all areas are drawn below the lines. Close the rings, as camber_areas_create
-     * does: an open one fills everything to its right. NULL: lines are drawn. */
+     * does: an open ring fills everything to its right. NULL: lines are drawn. */
     const camber_fill *fill;
 } camber_paint;
 
@@ -667,7 +670,7 @@ typedef struct camber_pass {
     float opacity; /* the pass is composited onto the picture as one layer with this opacity. 0: 1, and no layer */
 } camber_pass;
 
-/* A picture: its passes, drawn one over the other. */
+/* A picture, made by drawing its passes one over the other. */
 typedef struct camber_frame {
     uint32_t width, height;  /* px; 1 to 65535 each */
     camber_color background; /* zero: transparent */
@@ -698,7 +701,7 @@ typedef struct camber_frame_stats {
  * to stop drawing. */
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
-/* Draws a frame and hands its rows over.
+/* Draws a frame and passes its rows to `rows`.
  * rows may be NULL: the frame is then drawn and finished, but not read back. stats may be NULL.
  * Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range; meshes whose cameras have different pitches; a dash, a
  * ramp or an image that breaks the rules of its own description; a dash, a ramp, an image or a trim with a mesh without
@@ -711,12 +714,12 @@ CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const
 /* The alignment in bytes that the caller's pixels need, so that kernels can write them in place. */
 #define CAMBER_PIXELS_ALIGNMENT 128
 
-/* Draws a frame into the caller's memory: rows from the top down, stride_bytes from one to the next. stride_bytes is at
- * least width * 4; 0 means width * 4. rgba must not be NULL.
+/* Draws a frame into the caller's memory: rows from the top down, with stride_bytes from one row to the next.
+ * stride_bytes is at least width * 4; 0 means width * 4. rgba must not be NULL.
  * The kernels write the pixels in place (zero copy) if OpenCL draws on the host's processor, rgba is aligned to
  * CAMBER_PIXELS_ALIGNMENT, width and height are multiples of 32, rows have no gaps, and the picture is drawn across its
  * whole width (up to 8192 px, unless the memory limit is lower). Otherwise rows are copied.
- * stats and the return values are those of camber_renderer_render. The pixels are undefined on failure. */
+ * stats and the return values are as for camber_renderer_render. The pixels are undefined on failure. */
 CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
 
@@ -728,19 +731,19 @@ typedef struct camber_texture {
     uint32_t name;  /* a GL_TEXTURE_2D of GL_RGBA8, as wide and high as the frame */
     bool keep;      /* the frame is drawn over the texture's content. false: it replaces the content */
     bool bottom_up; /* the picture's last row is at t = 0, as in GL framebuffers. false: its first row is */
-    void *ready;    /* a GLsync after what other contexts did to the texture; GL waits for it. NULL: none */
+    void *ready;    /* a GLsync that follows other contexts' work on the texture; GL waits for it. NULL: none */
 } camber_texture;
 
 /* Draws a frame into a texture and reads nothing back, so that an engine can draw below and above the lines. GL and
- * OpenCL renderers can draw into the same texture in turn. The surface's context stays current: make your own current
- * again.
+ * OpenCL renderers can draw into the same texture in turn. The surface's context stays current, so make your own
+ * current again afterwards.
  * frame is drawn in one piece, so its sides are at most the surface's largest_target_px.
- * *drawn receives a GLsync after the last command, which has been flushed. Another context waits for it with glWaitSync
- * before it uses the texture, and the caller deletes it. If it is NULL after the call, drawing is complete. If drawn
- * itself is NULL, the call waits.
+ * *drawn receives a GLsync that follows the last command, and has been flushed. Another context waits for it with
+ * glWaitSync before it uses the texture, and the caller deletes it. If *drawn is NULL after the call, drawing is
+ * complete. If drawn itself is NULL, the call waits.
  * Returns the errors of camber_renderer_render, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a
  * renderer without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are undefined on failure.
- * Layers take up to 25 bytes a px more. */
+ * Layers take up to 25 bytes more per px. */
 CAMBER_API camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
                                                         const camber_texture *texture, void **drawn);
 

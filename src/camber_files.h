@@ -15,12 +15,12 @@ extern "C" {
 /* Polylines as arrays, in the form of camber_polylines_desc. camber_lines_destroy frees arrays that the library
  * allocated. */
 typedef struct camber_lines {
-    camber_context *context; /* it allocated the arrays. NULL: they are the caller's, and destroy does not free them */
+    camber_context *context; /* the arrays' allocator. NULL: they are the caller's, and destroy does not free them */
     float *points;
     uint32_t *offsets;
     size_t point_count;
     size_t polyline_count;
-    /* one network entry per polyline, which it comes from (camber_network_project_lines). NULL: none */
+    /* for each polyline the network entry that it comes from (camber_network_project_lines). NULL: none */
     uint32_t *entries;
 } camber_lines;
 
@@ -40,7 +40,7 @@ CAMBER_API camber_status camber_lines_simplify(camber_context *context, const ca
 /* Frees the arrays, unless they are the caller's. */
 CAMBER_API void camber_lines_destroy(camber_lines *lines);
 
-/* Where output goes. */
+/* Receives output. */
 typedef struct camber_sink {
     /* Receives bytes, in order. Returns false if it cannot take them; the caller knows why. */
     bool (*write)(void *user, const void *bytes, size_t size_bytes);
@@ -60,7 +60,7 @@ typedef struct camber_png_text {
 
 typedef struct camber_png_desc {
     uint32_t width, height;       /* px, 1 to 65535 */
-    bool opaque;                  /* true: alpha is dropped. false: alpha is kept if any pixel has one below 255 */
+    bool opaque;                  /* true: alpha is dropped. false: alpha is kept if it is below 255 in any pixel */
     const camber_png_text *texts; /* text_count of them. NULL: none */
     size_t text_count;
     int compression; /* DEFLATE's level, 1 to 9. 0: 1 */
@@ -70,15 +70,15 @@ typedef struct camber_png camber_png;
 
 /* Makes a PNG writer. Call camber_png_write_rows until all rows are written, and then camber_png_finish. The writer
  * buffers a picture of up to 2^22 px, uses a palette if 256 colours are enough, and writes the file at the end. It
- * writes the rows of a larger picture as they come, at half the speed and without a palette. After a failure, all
- * further calls fail.
+ * writes the rows of a larger picture as it receives them, at half the speed and without a palette. After a failure,
+ * all further calls fail.
  * Returns CAMBER_ERROR_ARGUMENT (a size, a level or the length of a text's key is out of range), CAMBER_ERROR_IO (the
  * sink returned false), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
                                            camber_png **png);
 /* Takes the next rows, from the top down; the file gets unpremultiplied colours, as PNG requires.
  * rgba has row_count rows of width * 4 bytes, premultiplied RGBA8.
- * Returns what camber_png_create returns. */
+ * Returns the same errors as camber_png_create. */
 CAMBER_API camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count);
 /* Writes the end of the file.
  * Returns CAMBER_ERROR_IO (rows are missing, or the sink returned false), CAMBER_ERROR_MEMORY. */
@@ -91,7 +91,7 @@ CAMBER_API void camber_png_destroy(camber_png *png);
 typedef enum camber_encoding {
     CAMBER_ENCODING_PNG = 0, /* lossless: a palette if 256 colours are enough, else RGB or RGBA */
     /* always a palette, in which similar blended colours share an entry; docs/encoding.md says how much they differ.
-     * Opaque and transparent pixels stay so */
+     * Opaque and transparent pixels stay opaque and transparent */
     CAMBER_ENCODING_PNG8,
     CAMBER_ENCODING_WEBP,
 } camber_encoding;
@@ -103,7 +103,7 @@ CAMBER_API uint32_t camber_encoding_get_longest_side(camber_encoding encoding);
 
 typedef struct camber_encoder_desc {
     camber_encoding encoding;
-    bool opaque;                  /* alpha is dropped */
+    bool opaque;                  /* true: alpha is dropped */
     int compression;              /* PNG: DEFLATE's level, 1 to 9. 0: 1, or 6 for png8 */
     int quality;                  /* WebP: 1 to 100; 100 is lossless. 0: 80 */
     const camber_png_text *texts; /* PNG: text_count of them. NULL: none */

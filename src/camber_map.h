@@ -135,12 +135,12 @@ typedef struct camber_source_desc {
      * is no filter; and the lines of an OpenStreetMap PBF, whatever its name, with several threads. */
     const char *path;
     /* The layer to read. NULL: OSM's "lines"; in a vector tile set the layers that the style names, or, if the set has
-     * none of them, its road layer, or else all; in other files every layer of which the style draws something. */
+     * none of them, its road layer, or else all; in other files every layer from which the style draws something. */
     const char *layer;
     const char *where; /* an OGR attribute filter, not for PMTiles. NULL: none */
-    /* true: no lines are merged. false: lines that the style cannot tell apart are merged where exactly two of them
-     * meet end to end. Lines of opposite direction are merged too, unless the style uses line-dasharray, line-offset,
-     * line-gradient or line-pattern. */
+    /* true: no lines are merged. false: lines that the style cannot tell apart are merged at points where exactly two
+     * of them meet end to end. Lines of opposite direction are merged too, unless the style uses line-dasharray,
+     * line-offset, line-gradient or line-pattern. */
     bool keep_apart;
     uint32_t threads; /* that read an OpenStreetMap PBF; 0: one per core */
 } camber_source_desc;
@@ -216,8 +216,8 @@ CAMBER_API bool camber_features_explain_nothing(const camber_features *features,
  * unchanged. It visits every point. */
 CAMBER_API bool camber_features_get_bounds(const camber_features *features, double bounds[4]);
 
-/* The same for what the style draws between two zooms; west is greater than east if the box that crosses the
- * antimeridian is the smaller one. false: nothing is drawn. */
+/* Writes the bounding box of everything that the style draws between two zooms. west is greater than east if the box
+ * that crosses the antimeridian is the smaller one. false: nothing is drawn. */
 CAMBER_API bool camber_features_get_drawn_bounds(const camber_features *features, double min_zoom, double max_zoom,
                                                  double bounds[4]);
 
@@ -227,7 +227,7 @@ CAMBER_API bool camber_features_get_drawn_bounds(const camber_features *features
  * Returns CAMBER_ERROR_ARGUMENT (the style reads other properties; read the files into another set). */
 CAMBER_API camber_status camber_features_restyle(camber_features *features, const camber_style *style);
 
-/* Returns whether camber_features_read needs GDAL for such a file. */
+/* Returns whether camber_features_read needs GDAL for the file of this source. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL; without this call, reading the first file loads it.
  * Returns CAMBER_ERROR_IO (GDAL or camber's module for it is missing).
@@ -261,23 +261,24 @@ typedef struct camber_view_desc {
 } camber_view_desc;
 
 /* Returns the view that the style's document asks for: centre, zoom, bearing and pitch, at most 85. Values that the
- * document does not give are those of a view at longitude and latitude 0, of the whole world, north up, from straight
- * above. Sizes and ratio are 0. */
+ * document does not give describe a view of the whole world: longitude, latitude and zoom are 0, north is up, and the
+ * camera looks straight down. Sizes and ratio are 0. */
 CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
-/* Reads the sources that the style's line, fill and circle layers name, and after camber_features_read_fonts those of
- * its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles that the
- * view sees, and those from which circles of up to 256 CSS px reach into it: the source's tiles or url is a template of
- * file names, TileJSON, MBTiles or PMTiles. Tiles are 512 CSS px wide, and of the view's zoom, clamped to the zooms of
- * the source. Sources of type geojson are read whole. A missing tile counts as empty; damage is counted, and a warning
- * is logged. Lines that the style cannot tell apart are merged where one continues the other almost straight, unless
- * the style uses a property that depends on a line's direction. view selects the tiles; for another view, read into
- * another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are known.
- * base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working folder.
- * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
- * that cannot be read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. */
+/* Reads the sources that the style's line, fill and circle layers name, and, after camber_features_read_fonts, the
+ * sources of its symbol layers, instead of files that the caller names. From a source of type vector it reads the tiles
+ * that the view sees, and tiles from which circles of up to 256 CSS px reach into the view: the source's tiles or url
+ * is a template of file names, TileJSON, MBTiles or PMTiles. The tiles are 512 CSS px wide and have the view's zoom,
+ * clamped to the source's zooms. Sources of type geojson are read whole. A missing tile counts as empty; damage is
+ * counted, and a warning is logged. Lines that the style cannot tell apart are merged if one continues the other almost
+ * straight, unless the style uses a property that depends on a line's direction. view selects the tiles; for another
+ * view, read into another set. A view of kind CAMBER_VIEW_FIT shows the sources' bounds, or the whole world if none are
+ * known. base_path is the style's file: paths are relative to its folder. NULL: they are relative to the working
+ * folder. Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the
+ * network, a file that cannot be read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles),
+ * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
                                                       const char *base_path);
 
@@ -291,10 +292,10 @@ CAMBER_API camber_status camber_features_read_sources(camber_features *features,
 CAMBER_API camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path);
 
 /* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
- * read, since what is only labelled is read only for labels. Glyphs that the style names (as files: nothing is
- * downloaded) are used before fonts. The scenes of the set, except those of CAMBER_SCENE_LINES, then have the labels of
- * their view, which camber_scene_tessellate draws; tiles have none. desc may be NULL. base_path is as in
- * camber_features_read_sources.
+ * read, because features that are only labelled are read only if there are fonts. Glyphs that the style names (as
+ * files: nothing is downloaded) are used before fonts. Scenes of the set, except those made with CAMBER_SCENE_LINES,
+ * then have the labels of their view, which camber_scene_tessellate prepares for drawing. Tiles have no labels. desc
+ * may be NULL. base_path is as in camber_features_read_sources.
  * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, or not in the root; an unknown
  * scheme), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,
@@ -304,11 +305,11 @@ CAMBER_API camber_status camber_features_read_fonts(camber_features *features, c
 
 /* The views that a scene is made for. */
 typedef enum camber_scene_use {
-    CAMBER_SCENE_VIEWS = 0, /* a view that moves: the network stays as long as it serves the others */
-    /* One view; another one takes a new network. Points are rounded to 1/4096 px of it, as tiles of its zoom have them
-     * (camber_tiles.h), so that these are cuts of the picture. */
+    CAMBER_SCENE_VIEWS = 0, /* a view that moves: the network is kept as long as it can be used for the next view */
+    /* One view; another view needs a new network. Points are rounded to 1/4096 px of the view, as in tiles of its zoom
+     * (camber_tiles.h), so that such tiles are exact parts of the picture. */
     CAMBER_SCENE_ONE_VIEW,
-    CAMBER_SCENE_LINES, /* as VIEWS, of lines only: camber_scene_triangulate has the areas */
+    CAMBER_SCENE_LINES, /* like VIEWS, but with lines only; camber_scene_triangulate makes the areas */
 } camber_scene_use;
 
 typedef struct camber_scene_desc {
@@ -326,8 +327,8 @@ typedef struct camber_scene_info {
     bool opaque;            /* the background covers the picture */
     size_t undrawn;         /* features anywhere of which the style draws nothing at this zoom */
     size_t layers;          /* layers of the style that draw something in the view */
-    /* features of the polylines that are partly in the view, once for layers that share lines; a merged polyline counts
-     * for all of its features */
+    /* features whose polylines are at least partly in the view, counted once for layers that share lines; a merged
+     * polyline counts for all of its features */
     size_t features;
     size_t polylines, points; /* to tessellate */
     size_t points_in;         /* points of these features' polylines, before simplification and clipping */
@@ -345,14 +346,15 @@ typedef struct camber_scene camber_scene;
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range). */
 CAMBER_API camber_status camber_features_read_for(camber_features *features, const camber_scene_desc *scene);
 
-/* Makes a scene: evaluates the style, and makes a network of the lines that it draws. The features must outlive the
+/* Makes a scene: evaluates the style, and makes a network from the lines that it draws. The features must outlive the
  * scene. It is not an error if there is nothing to draw. If the style draws none of the features, a warning names the
  * keys that it selects features by.
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
-/* Makes the last scene of its features, of ONE_VIEW whatever use says: their points go as soon as they are in the
- * network, and those that it leaves out before that. Then the features can make no other scene. Returns the same. */
+/* Makes the last scene of its features, with CAMBER_SCENE_ONE_VIEW, whatever desc->use says. Points that the network
+ * leaves out are freed before it is made, and the others as soon as it has them. Afterwards, no other scene can be made
+ * from the features. Returns the errors of camber_scene_create. */
 CAMBER_API camber_status camber_scene_create_last(camber_features *features, const camber_scene_desc *desc,
                                                   camber_scene **scene);
 CAMBER_API void camber_scene_destroy(camber_scene *scene);
@@ -361,7 +363,8 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
  * on the device, if the filters still select the same features and the picture shows no other copy of the world. If the
  * call fails, the scene is unchanged.
  * Returns the errors of camber_scene_create.
- * Cost: the style is evaluated once per class of features. If another network is needed, one pass over the points. */
+ * Cost: the style is evaluated once per class of features. If another network is needed, there is also one pass over
+ * the points. */
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
 /* Tessellates the lines that the view sees. Returns the errors of camber_mesh_tessellate_network. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
@@ -370,7 +373,7 @@ CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camb
 CAMBER_API camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
                                                     camber_tessellation_desc *desc);
 
-/* Projects the lines that the view sees on the host, by the CPU twin, for the getters below: call it before them, and
+/* Projects the lines that the view sees on the host, with the CPU twin, for the getters below. Call it before them, and
  * again after camber_scene_move. If the lines are already there, it does nothing. Drawing a network does not need it.
  * Each visible stretch of a line becomes a polyline of its own. These lines are therefore drawn without dashes,
  * gradients, trims and patterns.
@@ -410,7 +413,7 @@ typedef struct camber_area_data {
     size_t fill_count;
 } camber_area_data;
 
-/* Makes triangles of the areas that the view sees, clipped one px outside the picture. They cover exactly what the
+/* Makes triangles from the areas that the view sees, clipped one px outside the picture. They cover exactly what the
  * nonzero rule fills, without overlap within a fill. Points are on multiples of 1/256 px. Patterns are left out, and
  * the view's pitch is ignored. Free areas with camber_area_data_destroy, also after a failure. The points of the
  * features must not have been released.
@@ -423,7 +426,7 @@ CAMBER_API void camber_area_data_destroy(camber_area_data *areas);
 typedef struct camber_mesh_data camber_mesh_data; /* camber_proof.h */
 
 typedef struct camber_glb_desc {
-    const camber_stroke *strokes; /* stroke_count of them. They go to the file's extras, with the paints */
+    const camber_stroke *strokes; /* stroke_count of them, written to the file's extras, with the paints */
     const camber_paint *paints;   /* stroke_count of them. NULL: none */
     size_t stroke_count;
     const char *copyright;         /* asset.copyright. NULL: none */
@@ -431,11 +434,11 @@ typedef struct camber_glb_desc {
 } camber_glb_desc;
 
 /* Writes a mesh as a binary glTF 2.0 file that any reader loads. It has triangles, or strips in which degenerate
- * triangles mark the restarts; x goes right, y up, z is 0, and a unit is a pixel.
+ * triangles mark the restarts; x points right, y up, z is 0, and a unit is a pixel.
  * POSITION is the true outline of the lines at the widths of the strokes. camber's shaders draw from _CENTER, _SEGMENT,
  * _EXTRUDE, _TURN, _FLAGS and _ROW, which glb.c describes.
- * Areas are triangles in a primitive of their own, before that of the lines, with POSITION and COLOR_0; the topmost
- * layer of areas is at z = -1, and each further one is 1 px lower.
+ * Areas are triangles in a separate primitive, before the primitive of the lines, with POSITION and COLOR_0. The
+ * topmost layer of areas is at z = -1, and each further layer is 1 px lower.
  * Returns CAMBER_ERROR_ARGUMENT (a paint that is not finite, a copyright that is not UTF-8), CAMBER_ERROR_IO (the sink
  * returned false), CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,

@@ -15,10 +15,10 @@ typedef struct camber_network_entry {
     uint32_t polyline;
     uint32_t row;   /* an index into the strokes, below 2^24 */
     double shift_x; /* added to each x: for another copy of a world that repeats */
-    /* The polyline is a ring to be filled: its inside stays correct even if the camera's window cuts the ring. A ring
-     * with an invalid point is left out. */
+    /* The polyline is a ring that will be filled. Its inside stays correct even if the camera's window cuts the ring. A
+     * ring with an invalid point is left out. */
     bool is_area;
-    bool is_dots; /* each point of the polyline is a dot by itself, and none is left out */
+    bool is_dots; /* each point of the polyline is a separate dot, and none is left out */
 } camber_network_entry;
 
 typedef struct camber_network_desc {
@@ -33,15 +33,16 @@ typedef struct camber_network_desc {
     bool keep_open; /* as in camber_polylines_desc */
     /* each point stores how far along its polyline it is, for meshes with arc lengths: 4 more bytes per point */
     bool has_arc_length;
-    /* With has_arc_length: two numbers per polyline. They say that it is part of a longer line, from the first fraction
-     * of that line's length to the second; its arc lengths are then those of the longer line. NULL: 0 and 1 for all. */
+    /* With has_arc_length: two numbers per polyline, for polylines that are parts of longer lines. A polyline extends
+     * from the first fraction of the longer line's length to the second, and its arc lengths are measured along the
+     * longer line. NULL: 0 and 1 for all. */
     const float *progress;
     /* Points of less importance than this are not stored, for callers whose cameras would leave them out in any case.
      * Ends are kept, and arc lengths and the bounding box are as if no point were left out. 0: all are stored. */
     float least_importance;
-    /* Points are rounded to multiples of this, in world units; if their bounding box is too large for it, to multiples
-     * of twice as much, 4 times as much, and so on. Thus networks of different parts of a map round points alike. 0: as
-     * fine as the box allows. */
+    /* Points are rounded to multiples of this step, in world units, or of 2, 4, ... times the step if their bounding
+     * box is too large for it. So networks of different parts of a map round points alike. 0: the finest step that the
+     * box allows. */
     double step;
 } camber_network_desc;
 
@@ -50,9 +51,9 @@ typedef struct camber_network_desc {
  * box of all points (0.02 mm for a city of 50 km, 2 cm for the planet), or to a step that the caller chooses. */
 typedef struct camber_network camber_network;
 
-/* Makes a network of polylines, and cleans them as camber_polylines_create does. Points that are not finite split their
- * polyline. Points that round to the same step as the previous one are dropped. A polyline that returns to its first
- * point is a ring.
+/* Makes a network from polylines, and cleans them as camber_polylines_create does. Points that are not finite split
+ * their polyline. Points that round to the same step as the previous one are dropped. A polyline that returns to its
+ * first point is a ring.
  * Returns CAMBER_ERROR_INPUT (offsets that do not ascend, an entry without a polyline, a row of 2^24 or more),
  * CAMBER_ERROR_LIMIT (2^31 points or more), CAMBER_ERROR_MEMORY.
  * Cost: one pass over the points. The network takes 12 bytes per stored point and 24 per polyline. A device that uses
@@ -69,18 +70,18 @@ typedef struct camber_camera {
     double x, y;            /* the picture's centre, world units */
     double scale_px;        /* px per world unit, above 0 */
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
-    uint32_t width, height; /* of the picture, px */
+    uint32_t width, height; /* size of the picture, px */
     /* The simplification tolerance, 0 or more px: points whose camber_network_desc.importance is smaller are left out.
-     * 0: none are. */
+     * 0: no points are left out. */
     double simplify_px;
     /* The largest distance by which any paint of the mesh will translate lines, 0 or more px
-     * (camber_paint.translate_x_px). Lines that such a translation brings into the picture are then kept as well. */
+     * (camber_paint.translate_x_px). Lines that such a translation moves into the picture are then kept as well. */
     double translate_px;
     double pitch_deg; /* 0 to 85. The mesh remembers it, and frames that draw the mesh use it */
 } camber_camera;
 
-/* Tessellates the lines of a network that the camera sees, and replaces what the mesh held. The device projects the
- * lines, simplifies, cuts and compacts them; the host learns only the sizes. Polylines are cut where they leave a
+/* Tessellates the lines of a network that the camera sees, and replaces the mesh's earlier content. The device projects
+ * the lines, simplifies, cuts and compacts them; the host learns only the sizes. Polylines are cut where they leave a
  * window around the picture. The window is larger than any stroke reaches, by at least 64 px, so that no caps show and
  * no vertices are far away. The mesh keeps the network on the device: another call uploads nothing. The same camera
  * gives the same bytes.

@@ -2,11 +2,12 @@
  *
  *     runs of text -> camber_text_shape -> glyphs of lines -> camber_fonts_get_outline -> rings for camber_areas
  *
- * It is part of libcamber-map. HarfBuzz shapes, FriBidi orders text of both directions, and lines break by the rules of
- * the MapLibre style specification. Errors, ownership and threads are as in camber.h: fonts belong to a context.
+ * It is part of libcamber-map. HarfBuzz shapes the text, FriBidi orders text that mixes both directions, and lines
+ * break by the rules of the MapLibre style specification. Errors, ownership and threads are as in camber.h: fonts
+ * belong to a context.
  *
- * Units. Lengths are in ems: 1 is the size of the text. x goes right, y down. Outlines begin at the glyph's origin on
- * the baseline. */
+ * Units. Lengths are in ems: 1 is the size of the text. x points right, y down. Outlines are relative to the glyph's
+ * origin on the baseline. */
 #ifndef CAMBER_TEXT_H
 #define CAMBER_TEXT_H
 
@@ -20,20 +21,20 @@ extern "C" {
 
 /* A run of text names a stack of fonts. A character, with the marks on it, is drawn by the first of these that has it:
  *
- *     1. the glyphs that the caller's function gives
- *     2. the fonts of the stack: from a folder, else the shipped one, else from the system; a name means the font that is
- *        called so, else the one of its family with the nearest weight, width and slant
+ *     1. the glyphs that the caller's function provides
+ *     2. the fonts of the stack: from a folder, else the shipped font, else from the system; a name means the font with
+ *        this name or else the font of its family with the nearest weight, width and slant
  *     3. the shipped font: Noto Sans for Latin, Greek and Cyrillic, regular, bold or italic
- *     4. Noto Sans of the character's script, such as Noto Sans Arabic
- *     5. any font of the folders
- *     6. the system's fonts, in the order of fontconfig
+ *     4. Noto Sans for the character's script, such as Noto Sans Arabic
+ *     5. any font in the folders
+ *     6. the system's fonts, in fontconfig's order
  *
- * This depends on no earlier text. A warning names each font of a stack that is missing, once; the log at
- * CAMBER_LOG_INFO says which fonts are drawn with. Glyphs that are colour pictures are left out. */
+ * The choice never depends on earlier texts. One warning is logged for each font of a stack that is missing; at
+ * CAMBER_LOG_INFO the log says which fonts are used. Glyphs that are colour pictures are left out. */
 
-/* Gives the glyphs of a range of 256 code points, from first on, as a glyph PBF of the style specification. stack: the
+/* Provides the glyphs for 256 code points, starting with first, as a glyph PBF of the style specification. stack: the
  * names of the fonts, separated by commas. *bytes stays valid until the next call.
- * Returns CAMBER_ERROR_NOT_FOUND if there is no such range: other fonts are then asked. */
+ * Returns CAMBER_ERROR_NOT_FOUND if there is no such range: fonts are then used instead. */
 typedef camber_status camber_glyph_range_fn(void *user, const char *stack, uint32_t first, const uint8_t **bytes,
                                             size_t *size_bytes);
 
@@ -41,20 +42,20 @@ typedef struct camber_fonts_desc {
     const char *const *folders; /* folder_count folders that are searched for font files, before the system's fonts */
     size_t folder_count;
     bool no_system;                /* leave out the fonts that fontconfig knows */
-    camber_glyph_range_fn *glyphs; /* asked before all fonts. NULL: none */
+    camber_glyph_range_fn *glyphs; /* asked before any font. NULL: there is none */
     void *glyphs_user;
 } camber_fonts_desc;
 
 typedef struct camber_fonts camber_fonts;
 
-/* Makes a set of fonts. Font files are opened when text needs them. Besides folders and the system's, there is always
- * the font that camber ships. desc may be NULL.
+/* Makes a set of fonts. Font files are opened when text needs them. Besides the fonts of folders and of the system, the
+ * set always has the font that camber ships. desc may be NULL.
  * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_fonts_create(camber_context *context, const camber_fonts_desc *desc,
                                              camber_fonts **fonts);
 CAMBER_API void camber_fonts_destroy(camber_fonts *fonts);
 
-/* A glyph's outline: closed rings without repeated points. The inside is where the winding number is not 0. */
+/* A glyph's outline: closed rings without repeated points. A point is inside if its winding number is not 0. */
 typedef struct camber_outline {
     const float *points;     /* pairs of x, y */
     const uint32_t *offsets; /* ring_count + 1 indices into points */
@@ -62,8 +63,8 @@ typedef struct camber_outline {
     float left, top, right, bottom;
 } camber_outline;
 
-/* Gives a glyph's outline. Curves are made of segments that are at most tolerance_em away from them; 1/256 is used in
- * place of 0. The outline belongs to the fonts and stays valid as long as they do.
+/* Returns a glyph's outline. A curve becomes segments that are at most tolerance_em away from it; 0 means 1/256. The
+ * outline belongs to the fonts and stays valid as long as they exist.
  * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (an outline of more than 2^20 points). */
 CAMBER_API camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
                                                   camber_outline *outline);
@@ -89,21 +90,21 @@ typedef enum camber_text_justify {
     CAMBER_JUSTIFY_AUTO, /* towards the anchor's side */
 } camber_text_justify;
 
-/* How a run that is smaller than others of its line stands next to them. */
+/* How a run that is smaller than the others in its line is aligned with them. */
 typedef enum camber_text_align {
     CAMBER_ALIGN_BOTTOM = 0, /* on their baseline */
     CAMBER_ALIGN_CENTER,
     CAMBER_ALIGN_TOP,
 } camber_text_align;
 
-/* Text of one look, or an image among text. */
+/* Text with one font and size, or an image in the text. */
 typedef struct camber_text_run {
-    const char *text; /* UTF-8, size_bytes of it; what is invalid is shown as U+FFFD. NULL: an image */
+    const char *text; /* size_bytes of UTF-8; invalid bytes are shown as U+FFFD. NULL: an image */
     size_t size_bytes;
     const char *const
         *fonts; /* font_count names, each with its style, such as "Noto Sans Bold"; the first is preferred */
     size_t font_count;
-    float scale;                           /* of the text's size. 0: 1 */
+    float scale;                           /* relative to the text's size. 0: 1 */
     float image_width_em, image_height_em; /* of an image */
     camber_text_align align;
 } camber_text_run;
@@ -111,12 +112,12 @@ typedef struct camber_text_run {
 typedef struct camber_text_desc {
     const camber_text_run *runs; /* run_count of them */
     size_t run_count;
-    float max_width_em;   /* lines that would be longer break. 0: lines break only where the text says so */
+    float max_width_em;   /* longer lines are broken. 0: only newlines in the text break lines */
     float line_height_em; /* 0: 1.2 */
     float letter_spacing_em;
     camber_text_anchor anchor;
     camber_text_justify justify;
-    bool vertical;        /* lines go down and stand side by side: ideographs upright, other scripts turned */
+    bool vertical;        /* lines run downwards, side by side: ideographs are upright, other scripts turned */
     const char *language; /* BCP 47, for scripts whose shapes depend on it. NULL: none */
 } camber_text_desc;
 
@@ -124,12 +125,12 @@ typedef struct camber_text_desc {
 
 /* A glyph of a text, in the order in which it is drawn: from left to right, or down. */
 typedef struct camber_text_glyph {
-    uint32_t glyph; /* of the fonts. CAMBER_NO_GLYPH: the run's image, whose top left corner is at x, y */
+    uint32_t glyph; /* its number in the fonts. CAMBER_NO_GLYPH: the run's image, whose top left corner is at x, y */
     uint32_t run;
     uint32_t byte; /* where in the run's text its character begins */
-    float x, y;    /* its origin, from the text's anchor */
-    float advance; /* along the line, with the spacing */
-    float scale;   /* of its outline */
+    float x, y;    /* its origin, relative to the text's anchor */
+    float advance; /* along the line, including the spacing */
+    float scale;   /* scale of its outline */
     bool turned;   /* its outline is turned by 90 degrees clockwise */
 } camber_text_glyph;
 
@@ -142,19 +143,19 @@ typedef struct camber_text {
     camber_context *context;
     camber_text_glyph *glyphs; /* glyph_count of them, line by line */
     size_t glyph_count;
-    camber_text_line *lines; /* line_count of them, from the top down; vertical ones from right to left */
+    camber_text_line *lines; /* line_count of them, from the top down; vertical lines from right to left */
     size_t line_count;
-    float left, top, right, bottom; /* box around all lines, each line_height_em high, from the anchor */
+    float left, top, right, bottom; /* box around all lines, each line_height_em high, relative to the anchor */
     float line_height_em;
     bool vertical;
-    camber_text_anchor anchor; /* as it is placed now */
+    camber_text_anchor anchor; /* how the text is placed now */
     camber_text_justify justify;
 } camber_text;
 
-/* Shapes and lays out a text. An empty one has no lines. A character that no font has is drawn as the box that its font
- * has for this, and a warning names it once.
+/* Shapes and lays out a text. An empty text has no lines. A character that no font has is drawn as its font's box for
+ * missing characters, and one warning names it.
  * Returns CAMBER_ERROR_LIMIT (more than 2^20 bytes of text), CAMBER_ERROR_MEMORY.
- * Cost: linear in the text, some 0.2 us a character once its fonts are open. */
+ * Cost: linear in the length of the text, about 0.2 us per character once its fonts are open. */
 CAMBER_API camber_status camber_text_shape(camber_fonts *fonts, const camber_text_desc *desc, camber_text **text);
 /* Moves a text's glyphs for another anchor and justification. */
 CAMBER_API void camber_text_place(camber_text *text, camber_text_anchor anchor, camber_text_justify justify);

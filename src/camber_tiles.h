@@ -29,17 +29,17 @@ typedef struct camber_tiles_info {
     const char *compression; /* "gzip", "none" */
     int min_zoom, max_zoom;  /* as the archive says */
     uint64_t tiles;          /* number of tiles that can be requested */
-    uint64_t entries;        /* entries in the directories of PMTiles; for other formats the same as tiles */
+    uint64_t entries;        /* entries in the directories of PMTiles; for other formats, the same number as tiles */
     uint64_t contents;       /* number of distinct tiles, as they are stored */
     bool has_bounds, has_center;
     double bounds[4];        /* west, south, east, north, in degrees */
     double center[3];        /* longitude, latitude, zoom */
     const char *metadata;    /* the rest of the metadata, a JSON object without keys that are not UTF-8 */
-    const char *fingerprint; /* NULL: not told */
+    const char *fingerprint; /* NULL: it is not known */
     uint32_t shard, shards;  /* 0: it is not one shard of several */
     const camber_tiles_zoom *zooms;
     size_t zoom_count;
-    const char *schema; /* schema of vector tiles if the style "city" knows it, such as "OpenMapTiles"; else NULL */
+    const char *schema; /* of vector tiles, if the style "city" knows it, such as "OpenMapTiles"; otherwise NULL */
 } camber_tiles_info;
 
 /* Reads a description of an archive. Free *info with camber_tiles_info_destroy.
@@ -138,9 +138,9 @@ typedef struct camber_tiles_engine_desc {
 } camber_tiles_engine_desc;
 
 /* An engine draws tiles of features. One picture shows a metatile: up to 8 x 8 tiles. Metatiles are arranged in a grid
- * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across metatiles to within
- * one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends only on its
- * desc and on the features.
+ * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across the edges of metatiles
+ * to within one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends
+ * only on its desc and on the features.
  *
  * An engine, the renderer and the features serve one thread at a time. The caller owns a picture: other threads may cut
  * and encode it while the next one is drawn, each with a camber_encoder from a context of its own.
@@ -150,8 +150,8 @@ typedef struct camber_tiles_engine_desc {
 typedef struct camber_tiles_engine camber_tiles_engine;
 
 /* Returns a hash of everything that determines a picture of the features, except the desc: lines, the properties that
- * the style reads, the style with its sprites, and the library's version. It visits every point. Tiles that are cached
- * under this hash are never those of another input. */
+ * the style reads, the style with its sprites, and the library's version. It visits every point. A tile that is cached
+ * under this hash is never a tile of another input. */
 CAMBER_API uint64_t camber_features_get_hash(const camber_features *features);
 /* The features, the renderer and the device must outlive the engine.
  * Returns CAMBER_ERROR_ARGUMENT (a size or ratio out of range), CAMBER_ERROR_MEMORY. */
@@ -222,9 +222,9 @@ typedef struct camber_tiles_draw_desc {
     bool has_bbox;
     double bbox[4];
     const camber_features *region; /* draw only tiles that touch its polygons. NULL: all */
-    /* tile_count of them: draw only these, whatever the zooms above. With renew, draw those of them within the zooms
-     * above or, if min_zoom is negative, within the archive's zooms, and, without a bbox or a region, within its
-     * bounds. NULL: all. */
+    /* A list of tile_count tiles. Only these are drawn, whatever the zooms above. With renew, a tile on the list is
+     * drawn only if it is within the zooms above (if min_zoom is negative: within the archive's zooms) and, without a
+     * bbox or a region, within the archive's bounds. NULL: all tiles. */
     const camber_tiles_place *tiles;
     size_t tile_count;
     camber_encoding encoding;
@@ -237,7 +237,7 @@ typedef struct camber_tiles_draw_desc {
     /* draw shard `shard` of `shards`, from 1; 0: all. The caller gives each shard its own name */
     uint32_t shard, shards;
     const char *name, *description; /* NULL: the name of the output, and no description */
-    const char *attribution;        /* NULL: that of the features; "": none */
+    const char *attribution;        /* NULL: the features' attribution; "": none */
     /* Says which tiles are drawn; the features then need only contain what camber_tiles_schedule_read_for asks for.
      * NULL for a dry run. Otherwise NULL: the engine determines the tiles. */
     const camber_tiles_schedule *schedule;
@@ -246,7 +246,7 @@ typedef struct camber_tiles_draw_desc {
     const char *schedule_path;
     const char *const *inputs; /* with schedule_path: the input_count files that the features were read from */
     size_t input_count;
-    /* The engine's own features, if nothing else will be drawn of them: points are freed as soon as no remaining zoom
+    /* The engine's own features, if nothing else will be drawn from them: points are freed as soon as no remaining zoom
      * draws them, and the engine cannot draw afterwards. The deepest zoom is then drawn first, so that PMTiles are
      * copied at the end. NULL: the points are kept. */
     camber_features *spent;
@@ -266,7 +266,7 @@ typedef struct camber_tiles_stats {
     uint64_t points;   /* points that were drawn, counted once per zoom and metatile */
     uint64_t bytes;    /* bytes of the tiles; for a dry run, an estimate from sample pictures */
     bool done;         /* resume, renew: there was nothing left to do */
-    double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make_ms: networks and passes */
+    double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make_ms: for networks and passes */
     /* summed over all encoding threads: wall-clock time, and processor time */
     double encode_ms, encode_cpu_ms;
 } camber_tiles_stats;

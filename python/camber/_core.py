@@ -67,7 +67,7 @@ def text_of(pointer):
 
 
 def as_path(path):
-    """Returns a path or text as bytes. Refuses NUL, at which the library would end the text."""
+    """Returns a path or text as bytes. Refuses a NUL character, because the library would end the text there."""
     path = os.fsencode(path)
     if b"\0" in path:
         raise ArgumentError("%r contains a NUL character" % path)
@@ -111,7 +111,7 @@ class Keeper:
     def __init__(self):
         self.lock = threading.Lock()
         self.process = os.getpid()
-        self.surface = ffi.NULL  # calls and destructors leave its GL context current on their thread
+        self.surface = ffi.NULL  # a call or a destructor leaves its GL context current on the thread
         # address -> [pointer, destroy, addresses of parents, number of children, whether it is dropped]
         self._held = {}
         self._dropped = collections.deque()
@@ -130,7 +130,7 @@ class Keeper:
         self.free_dropped()
 
     def free_dropped(self):
-        """Frees the objects that wait, unless a call is in progress; then the end of the call does it."""
+        """Frees the objects that wait. If a call is in progress, they are freed when it ends."""
         while self._dropped and self.process == os.getpid() and self.lock.acquire(blocking=False):
             try:
                 while self._dropped:
@@ -141,7 +141,7 @@ class Keeper:
                 self.release()
 
     def release(self):
-        """Releases the lock, after freeing the surface, so that another thread can use both."""
+        """Releases the surface and then the lock, so that another thread can use both."""
         if self.surface != ffi.NULL:
             lib.camber_surface_release(self.surface)
         self.lock.release()
@@ -213,7 +213,7 @@ class Core:
     def make(self, function, *arguments, parents=()):
         """Calls X_create, whose last parameter receives the object. X_destroy is called after Python has dropped it.
 
-        Objects among the arguments are freed after the new object; so are parents, which a desc refers to.
+        Objects among the arguments are freed after the new object, and so are the parents, to which a desc refers.
         """
         made = ffi.new(ffi.typeof(function).args[-1])
         self.check(function(*arguments, made))
@@ -322,4 +322,4 @@ def default(context=None):
     return _defaults.context
 
 
-atexit.register(lambda: _defaults.__dict__.clear())  # frees the last thread's before drivers are shut down
+atexit.register(lambda: _defaults.__dict__.clear())  # frees the last thread's context before drivers are shut down

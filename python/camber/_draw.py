@@ -37,7 +37,7 @@ STROKE, PAINT, RECORD, VERTEX = (dtype_of("camber_" + name) for name in ("stroke
 
 
 def view(pointer, name, count, owner):
-    """Returns a structured array over the library's memory, without a copy. owner frees the memory."""
+    """Returns a structured array that uses the library's memory, without a copy. owner frees the memory."""
     if pointer == ffi.NULL or count == 0:
         return numpy.zeros(0, name if isinstance(name, numpy.dtype) else numpy.dtype(name))
     dtype = numpy.dtype(name)
@@ -191,10 +191,10 @@ def as_output(out, width, height):
 
 
 def render_frame(core, renderer, frame, out, premultiplied):
-    """Draws a frame into an array. Python's lock is released meanwhile."""
+    """Draws a frame into an array, without holding Python's lock."""
     out = as_output(out, frame.width, frame.height)
     rgba = ffi.cast("uint8_t *", out.ctypes.data)
-    if premultiplied or frame.background.a >= 1:  # for opaque pictures both are the same
+    if premultiplied or frame.background.a >= 1:  # straight and premultiplied alpha are the same in opaque pictures
         core.check(lib.camber_renderer_render_into(renderer, frame, rgba, out.strides[0], ffi.NULL))
         return out
     picture = ffi.new("camber_python_picture *", {
@@ -245,7 +245,7 @@ Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")
 
 def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_tolerance=0, keep_open=False,
                context=None, **style):
-    """Returns the mesh of lines in pixels, as arrays over the library's memory."""
+    """Returns the mesh of lines in pixels, as arrays that use the library's memory."""
     context = default(context)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
     table = Table(width, "#000", as_rows(rows, lines), lines, **style)

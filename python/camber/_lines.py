@@ -8,7 +8,7 @@ from ._library import ffi
 
 
 class Lines:
-    """points (n x 2), offsets (lines + 1), and for each line the index of its origin; None: each line is its own.
+    """Points (n x 2), offsets (lines + 1), and the index of each line's origin; None: each line is its own origin.
 
     origin_count is the number of origins, including those without a line.
     """
@@ -189,7 +189,7 @@ class _Arrow:
         return values if is_valid is None else numpy.where(is_valid, values, numpy.nan)
 
     def is_valid(self, array, first, count):
-        """Returns which elements are valid; None if all are."""
+        """Returns which elements are valid, or None if all of them are."""
         if array.null_count == 0 or array.n_buffers == 0 or array.buffers[0] == ffi.NULL:
             return None
         first += array.offset

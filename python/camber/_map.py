@@ -57,7 +57,7 @@ def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
 
 
 def translate(core, text, name, language):
-    """Returns a style document that reads names in a language first."""
+    """Returns a style document that prefers names in a language."""
     made = ffi.new("char **")
     core.check(lib.camber_style_translate(core.pointer, text, len(text), name, as_text(language), made))
     try:
@@ -162,7 +162,7 @@ class Map:
                 if lines.point_count else numpy.zeros(0, numpy.float32)
             offsets = numpy.frombuffer(ffi.buffer(lines.offsets, 4 * (lines.polyline_count + 1)), numpy.uint32) \
                 if lines.polyline_count else numpy.zeros(1, numpy.uint32)
-            made = points.reshape(-1, 2).copy(), offsets.copy()  # the scene frees its own when it moves
+            made = points.reshape(-1, 2).copy(), offsets.copy()  # the scene frees its own arrays when it moves
             lib.camber_scene_release_lines(self._scene)
             return made
 

@@ -41,7 +41,7 @@ def test_alpha():
     assert (straight[..., 3] == premultiplied[..., 3]).all() and straight[..., 3].max() == 128
     assert set(numpy.unique(straight[straight[..., 3] > 0][:, 0])) == {255}
     assert (premultiplied[..., 0] == premultiplied[..., 3]).all()
-    # All of them mean the same to an encoder, and a PNG keeps the values.
+    # The encoder treats straight and premultiplied values alike, and a PNG keeps them.
     assert camber.encode(straight) == camber.encode(premultiplied, premultiplied=True)
     assert (read_png(camber.encode(straight)) == straight).all()
 
@@ -180,7 +180,7 @@ def test_networks():
             network.draw(**{**style, **wrong})
     with pytest.raises(ValueError):
         camber.Network(POINTS, OFFSETS, importance=[1, 2])
-    for wrong in {"width": [3, 6]}, {"color": ["#f00", "#00f"]}:  # it is undefined which line gets which
+    for wrong in {"width": [3, 6]}, {"color": ["#f00", "#00f"]}:  # it is undefined which line gets which value
         with pytest.raises(ValueError, match="made without rows"):
             camber.Network(POINTS, OFFSETS).draw(**wrong)
     few = camber.Network(POINTS, OFFSETS, importance=[0, 0, 0, 0, 0, 0]).draw(width=2, simplify=1, size=(70, 66))

@@ -52,7 +52,7 @@ def address_of(function):
 
 
 def destroy(kind, capsule):
-    """Releases whatever is left together with its capsule."""
+    """Releases a struct together with its capsule, unless it has already been released."""
     made = kind.from_address(pointer_of(capsule, NAMES[kind]))
     if made.release:
         RELEASE(made.release)(ctypes.addressof(made))
@@ -66,7 +66,7 @@ def capsule_of(made):
 
 
 class Given:
-    """Counts releases, and overwrites the memory then, so that a later access is noticed."""
+    """Counts releases, and overwrites the memory at each one, so that a later access is noticed."""
 
     def __init__(self):
         self.released = []

@@ -71,7 +71,7 @@ def steps_within_a_draw(step, wanted):
 
 def test_draws_of_two_contexts_overlap():
     small = camber.Context()
-    # The first step may have begun earlier.
+    # Two steps, because the first one may have begun before the draw.
     assert steps_within_a_draw(lambda: camber.draw(POINTS, OFFSETS, size=(64, 64), context=small), 2) >= 2
 
 
@@ -107,7 +107,7 @@ def test_a_device_that_does_not_open_leaves_no_surface():
         with pytest.raises(ValueError):
             context.device
         gc.collect()
-        # This opens no surface. A sanitizer notices if it uses the freed one.
+        # This opens no surface. A sanitizer notices if the call uses the freed surface.
         assert camber.encode(numpy.zeros((4, 4, 4), numpy.uint8), context=context)
 
 
@@ -216,7 +216,7 @@ def resident_bytes():
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-CALLS = int(os.environ.get("CAMBER_CALLS", "2000"))  # tests/tool/test_python.sh asks for more with a sanitizer
+CALLS = int(os.environ.get("CAMBER_CALLS", "2000"))  # tests/tool/test_python.sh sets a higher number with a sanitizer
 
 
 def test_thousands_of_calls():

@@ -1,4 +1,4 @@
-/* Archives of tiles: PMTiles 3, MBTiles 1.3, and folders of files; how they are written, read, and verified.
+/* Archives of tiles (PMTiles 3, MBTiles 1.3, and folders of files): how they are written, read, and verified.
  *
  * Writing, from one thread:
  *
@@ -9,10 +9,10 @@
  *     camber_archive_writer_finish            the complete archive appears
  *     camber_archive_writer_destroy
  *
- * The bytes of an archive depend only on its description and its tiles, not on the order in which tiles were added, on
- * units, or on what was resumed or merged. Until the archive is complete, its tiles are in two files next to it, whose
- * names camber_archive_temporary_path returns. Units are appended to these files, with checksums that show which units
- * are complete.
+ * The bytes of an archive depend only on its description and its tiles. They do not depend on the order in which tiles
+ * were added, on the units, or on whether the work was resumed or merged from parts. Until the archive is complete, its
+ * tiles are in two files next to it, whose names camber_archive_temporary_path returns. Units are appended to these
+ * files, with checksums that show which units are complete.
  *
  * Memory: 24 bytes per added tile, 32 bytes per distinct content, and 2 MB. */
 #ifndef CAMBER_ARCHIVE_ARCHIVE_H
@@ -40,17 +40,18 @@ typedef enum camber_tile_type {
 
 enum { CAMBER_ARCHIVE_LARGEST_TILE_BYTES = 64 << 20 };
 
-/* Finds the format by the extension of a path. A folder is an existing one, or a path with a slash at the end. Returns
- * false if the path shows no format. */
+/* Finds the format by the extension of a path. A path is a folder if it is an existing folder, or if it ends with a
+ * slash. Returns false if the path does not show the format. */
 bool camber_archive_get_format(const char *path, camber_archive_format *format);
-/* Returns the name of a type, such as "png", which is also the extension of its files. That of OTHER is "bin". */
+/* Returns the name of a type, such as "png", which is also the extension of its files. The name of OTHER is "bin". */
 const char *camber_tile_type_get_name(camber_tile_type type);
 /* Returns the format for the metadata of MBTiles and folders: the name, or a media type. */
 const char *camber_tile_type_get_format(camber_tile_type type);
-/* Finds a type by its name, its format or another common extension. Returns OTHER if there is none. */
+/* Finds a type by its name, its format or another common extension. Returns OTHER if no type has it. */
 camber_tile_type camber_tile_type_find(const char *name);
 
-/* The place and zoom at which a viewer may open. If zeroed, it is the middle of the bounds at the lowest zoom. */
+/* The place and zoom at which a viewer may open the archive. A zeroed center stands for the middle of the bounds at the
+ * lowest zoom. */
 typedef struct camber_archive_center {
     bool given;
     double longitude, latitude;
@@ -64,9 +65,9 @@ typedef struct camber_archive_desc {
     camber_archive_format format;
     camber_tile_type type;
     bool gzipped; /* the bytes of tiles are compressed with gzip */
-    bool force;   /* replace an existing archive */
-    bool resume;  /* keep the units that an earlier run finished */
-    bool unites;  /* merging: two tiles with the same number and different bytes are an error; otherwise the later one
+    bool force;   /* replaces an existing archive */
+    bool resume;  /* keeps the units that an earlier run finished */
+    bool unites;  /* merging: two tiles with the same number and different bytes are an error; otherwise the later tile
                      wins */
     int min_zoom; /* min_zoom and max_zoom are only used if there are no tiles */
     int max_zoom;
@@ -74,9 +75,9 @@ typedef struct camber_archive_desc {
     camber_archive_center center;
     const json_t *metadata; /* an object: name, description, attribution, version and so on. NULL: none */
     /* Identifies the origin of the tiles, as words name=value separated by blanks: "input=... style=... options=...
-     * version=...". All parts of an archive have the same. NULL: unknown. */
+     * version=...". All parts of an archive have the same fingerprint. NULL: unknown. */
     const char *fingerprint;
-    uint32_t shard, shards; /* this is part shard, from 1, of this many shards; 0: the whole archive */
+    uint32_t shard, shards; /* this is part number `shard` of `shards` parts, counted from 1; 0: the whole archive */
 } camber_archive_desc;
 
 typedef struct camber_archive_writer camber_archive_writer;
@@ -87,8 +88,8 @@ typedef struct camber_archive camber_archive;
  * set), CAMBER_ERROR_INPUT (resume: the existing units have another fingerprint), CAMBER_ERROR_MEMORY. */
 camber_status camber_archive_writer_create(camber_context *context, const camber_archive_desc *desc,
                                            camber_archive_writer **writer);
-/* Whether an archive with the same fingerprint and shard already exists at the path, so that nothing is left to do.
- * Only with resume. */
+/* Whether an archive with the same fingerprint and shard already exists at the path, so that nothing is left to do. It
+ * is always false without resume. */
 bool camber_archive_writer_is_done(const camber_archive_writer *writer);
 /* Whether an earlier run finished this unit. */
 bool camber_archive_writer_has_unit(const camber_archive_writer *writer, uint64_t unit);
@@ -96,25 +97,25 @@ bool camber_archive_writer_has_unit(const camber_archive_writer *writer, uint64_
  * Returns CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (the tile is empty or larger than the limit). */
 camber_status camber_archive_writer_add(camber_archive_writer *writer, int zoom, camber_tile_index tile,
                                         const void *bytes, size_t size_bytes);
-/* Removes a tile that camber_archive_writer_take added. */
+/* Removes a tile that camber_archive_writer_take has added. */
 camber_status camber_archive_writer_remove(camber_archive_writer *writer, int zoom, camber_tile_index tile);
-/* Ends the unit with this number: its tiles are written, and survive the process. */
+/* Ends the unit with this number: its tiles are written, and survive the end of the process. */
 camber_status camber_archive_writer_end_unit(camber_archive_writer *writer, uint64_t unit);
-/* Adds all tiles of an archive, which is a part to merge, or an archive in which some tiles are replaced. Tiles added
- * by camber_archive_writer_add, before or after, take precedence. The archive stays open until the writer is destroyed;
- * its bytes are copied when the writer finishes. */
+/* Adds all tiles of an archive, which is either a part to merge, or an archive in which some tiles will be replaced.
+ * Tiles added by camber_archive_writer_add, before or after, take precedence. The archive stays open until the writer
+ * is destroyed; its bytes are copied when the writer finishes. */
 camber_status camber_archive_writer_take(camber_archive_writer *writer, camber_archive *archive);
 /* Writes the archive to a temporary path, syncs it, renames it and removes the temporary files. On failure, the path is
  * unchanged, and the units stay. Returns CAMBER_ERROR_IO, CAMBER_ERROR_INPUT (unites: two tiles differ),
  * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_archive_writer_finish(camber_archive_writer *writer);
-/* Returns how many of the taken tiles are missing from the finished archive because they were removed. */
+/* Returns how many of the taken tiles the finished archive lacks because they were removed. */
 uint64_t camber_archive_writer_get_removed(const camber_archive_writer *writer);
 /* Closes the files. The temporary files stay if a unit was finished but the archive was not. */
 void camber_archive_writer_destroy(camber_archive_writer *writer);
 
-/* Writes the name of the n-th temporary file of an archive: its tiles, its finished units, the complete archive.
- * Returns false after the last, or if the name is too long. */
+/* Writes the name of the n-th temporary file of an archive: the file of tiles, the file of finished units, and the
+ * complete archive before it is renamed. Returns false after the last one, or if the name is too long. */
 bool camber_archive_temporary_path(const char *path, size_t n, char *name, size_t size);
 /* Writes the names of the words that differ between two fingerprints: "style, version". */
 void camber_fingerprint_compare(const char *one, const char *other, char *names, size_t size);
@@ -127,28 +128,29 @@ struct camber_archive {
     camber_archive_format format;
     camber_tile_type type;
     bool gzipped;
-    bool sniffed;         /* the archive does not state its type, so that of its first tile is used */
+    bool sniffed;         /* the archive does not state its type, so the type of its first tile is used */
     camber_tile_set *set; /* NULL: a folder */
     int min_zoom, max_zoom;
     bool has_bounds;
     double bounds[4];
     camber_archive_center center;
-    int whole_center_zoom; /* the center's zoom in the whole archive, if this is a part of one; otherwise its own */
+    int whole_center_zoom; /* the center's zoom in the whole archive, if this is a part; otherwise the same as center's
+                            */
     json_t *metadata;      /* an object, without the values that other fields of this struct have */
     char *fingerprint;     /* NULL: unknown */
-    char checksum[17];     /* of its tiles, as camber_checksum_write writes it. "": unknown */
+    char checksum[17];     /* the checksum of its tiles, as camber_checksum_write writes it. "": unknown */
     uint32_t shard, shards;
 };
 
 /* Opens the archive at a path. Returns the errors of camber_tile_set_open. */
 camber_status camber_archive_open(camber_context *context, const char *path, camber_archive **archive);
-/* If the archive does not state the type of its tiles, determines it from the first tile. If that is not known, it
- * stays OTHER. Returns the errors of camber_archive_walk. */
+/* If the archive does not state the type of its tiles, determines it from the first tile. If that tile has no known
+ * type, the type stays OTHER. Returns the errors of camber_archive_walk. */
 camber_status camber_archive_sniff(camber_archive *archive);
 void camber_archive_close(camber_archive *archive);
 
 typedef struct camber_archive_tile {
-    uint64_t number, run_length; /* tiles number, number + 1, ... have the same bytes */
+    uint64_t number, run_length; /* the run_length tiles number, number + 1, ... have the same bytes */
     uint64_t offset;             /* PMTiles: within the file's section of tiles */
     uint64_t size_bytes;
     const unsigned char *bytes; /* valid during the call. NULL: PMTiles */
@@ -160,7 +162,8 @@ typedef struct camber_archive_tile {
 /* Calls take_tile for each tile or run of equal tiles, in the order in which they are stored. */
 camber_status camber_archive_walk(camber_archive *archive,
                                   camber_status (*take_tile)(void *user, const camber_archive_tile *tile), void *user);
-/* Reads a tile's bytes; for PMTiles from the file. *why: NULL, or what is wrong with its range. */
+/* Returns a tile's bytes; for PMTiles it reads them from the file. *why: NULL, or what is wrong with the tile's
+ * range. */
 camber_status camber_archive_read(camber_archive *archive, const camber_archive_tile *tile, camber_bytes *bytes,
                                   const char **why);
 

@@ -8,16 +8,16 @@
 
 #include "base/base.h"
 
-/* A zeroed checksum with a context is that of no contents. */
+/* A checksum that is zeroed apart from its context is the checksum of no contents. */
 typedef struct camber_checksum {
     camber_context *context;
-    uint64_t *hashes; /* of contents; the same one may occur several times */
+    uint64_t *hashes; /* hashes of contents; a content may occur several times */
     size_t count, capacity;
 } camber_checksum;
 
 /* hash: camber_content_hash of the bytes as stored. Returns false if there is no memory. */
 bool camber_checksum_add(camber_checksum *checksum, uint64_t hash);
-/* Computes the sum, and forgets what was added. text: 16 hexadecimal digits. */
+/* Writes the sum as 16 hexadecimal digits, and removes the hashes that were added. */
 void camber_checksum_write(camber_checksum *checksum, char text[17]);
 
 #endif

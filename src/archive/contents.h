@@ -16,8 +16,8 @@ enum { CAMBER_STORE_BEGIN = 16384 };
 /* A file that has contents. Store 0 is the writer's own, to which it appends. */
 typedef struct camber_content_store {
     int descriptor;
-    uint64_t offset; /* where its contents begin in the file */
-    char *name;      /* in messages */
+    uint64_t offset; /* where the contents begin in the file */
+    char *name;      /* for messages */
 } camber_content_store;
 
 typedef struct camber_contents {
@@ -28,7 +28,7 @@ typedef struct camber_contents {
     size_t table_size;
     camber_content_store *stores;
     size_t store_count, store_capacity;
-    /* The end of store 0, which is not written yet. */
+    /* The end of store 0, which is not in the file yet. */
     unsigned char *tail;
     size_t tail_bytes;
     uint64_t written_bytes;
@@ -36,7 +36,7 @@ typedef struct camber_contents {
     size_t compared_capacity;
 } camber_contents;
 
-/* A fast 64-bit hash. Bytes with equal hashes are then compared. */
+/* Returns a fast 64-bit hash. If two hashes are equal, the caller compares the bytes. */
 uint64_t camber_content_hash(const void *bytes, size_t size_bytes);
 
 /* Opens store 0 on an open file, which is empty or has contents that are noted later. name is copied. */
@@ -55,10 +55,10 @@ camber_status camber_contents_find(camber_contents *contents, const void *bytes,
 camber_status camber_contents_note(camber_contents *contents, const camber_content *content, uint32_t *index);
 /* Looks bytes up, and appends them to store 0 if they are new. */
 camber_status camber_contents_put(camber_contents *contents, const void *bytes, size_t size_bytes, uint32_t *index);
-/* Forgets the contents of store 0 from an offset on and truncates the store there. Call it before contents of other
- * stores are noted. */
+/* Removes the contents of store 0 from an offset on, and truncates the store at this offset. Call this before contents
+ * of other stores are noted. */
 void camber_contents_cut(camber_contents *contents, uint64_t end);
-/* Writes the part of store 0 that is not written yet. */
+/* Writes the end of store 0 that is not in the file yet. */
 camber_status camber_contents_flush(camber_contents *contents);
 /* Reads bytes from a store. */
 camber_status camber_contents_read(camber_contents *contents, uint32_t store, uint64_t offset, void *bytes,

@@ -110,7 +110,8 @@ static camber_status write_tileset(const camber_archive_plan *plan) {
     return status == CAMBER_OK ? camber_tileset_write(plan, write_beside, &own) : status;
 }
 
-/* Millions of files are not synced one by one: a power failure may lose some, but the end of the process does not. */
+/* The files are not synced one by one, because there may be millions. So a power failure may lose some of them, but the
+ * end of the process does not. */
 camber_status camber_archive_write_folder(const camber_archive_plan *plan) {
     enum { MOST_FILES = 1 << 26 };
     camber_bytes bytes = {.context = plan->context};
@@ -173,7 +174,7 @@ static bool is_dots(const char *entry) {
 
 /* ---- Replacing ---- */
 
-/* Whether no other folder can take its name, because it is the root, a mount point, "." or "..". */
+/* Whether no other folder can take the name of this folder, because it is the root, a mount point, "." or "..". */
 static bool is_fixed(const char *path) {
     const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
     char above[PATH_MAX];
@@ -220,7 +221,7 @@ static camber_status tell_stranger(const camber_folder_visitor *visitor, const c
     return visitor->take_stranger(visitor->user, path);
 }
 
-/* The path of the archive itself may be a link. A folder inside it may not. */
+/* The path of the archive may be a link, but a folder inside the archive may not. */
 static DIR *open_folder(const char *path, bool top) {
     struct stat about;
     const int opened = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC | (top ? 0 : O_NOFOLLOW));
@@ -235,7 +236,7 @@ static DIR *open_folder(const char *path, bool top) {
     return NULL;
 }
 
-/* Lists the entries of a folder whose names are numbers, in ascending order. The visitor gets the other names. */
+/* Lists the entries of a folder whose names are numbers, in ascending order. The visitor gets all other names. */
 static camber_status list(const camber_folder_visitor *visitor, const char *folder, bool files, bool top,
                           names *found) {
     camber_context *context = visitor->context;

@@ -1,4 +1,4 @@
-/* Folders of tiles: the files in them. */
+/* Folders of tiles: visits their files, and checks whether a folder may be replaced. */
 #ifndef CAMBER_ARCHIVE_FOLDER_H
 #define CAMBER_ARCHIVE_FOLDER_H
 
@@ -13,7 +13,7 @@ typedef struct camber_folder_visitor {
     camber_context *context;
     camber_status (*take_file)(void *user, const camber_folder_file *file);
     camber_status (*take_stranger)(
-        void *user, const char *path); /* called for a name that is not a tile's. NULL: such names are ignored */
+        void *user, const char *path); /* called for a name that is not that of a tile. NULL: such names are ignored */
     void *user;
     bool has_tileset; /* tileset.json and subtrees are expected */
 } camber_folder_visitor;

@@ -2,7 +2,7 @@
  *
  * Input: a path, then tile addresses. Output: bytes as they are stored. PMTiles and MBTiles are read through the reader
  * of vector tiles; a file in a folder is found by its name. Each look-up starts with the full budget of steps, because
- * a server makes any number of them. */
+ * the number of look-ups by a server has no limit. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -19,7 +19,7 @@ struct camber_tiles_reader {
     camber_tiles_info info;
     char *metadata;
     camber_bytes bytes;
-    char *file_bytes; /* the tile's file in a folder */
+    char *file_bytes; /* the bytes of the tile's file in a folder */
 };
 
 /* ---- The type of a folder without metadata ---- */
@@ -28,7 +28,7 @@ static camber_status take_file(void *user, const camber_folder_file *file) {
     camber_archive *archive = user;
     archive->type = camber_tile_type_find(file->extension);
     archive->gzipped = archive->type == CAMBER_TILE_MVT;
-    return CAMBER_ERROR_LIMIT; /* stop, because one is enough */
+    return CAMBER_ERROR_LIMIT; /* stops, because one tile is enough */
 }
 
 static camber_status find_type(camber_tiles_reader *reader) {

@@ -1,6 +1,6 @@
-/* MBTiles: a SQLite database with a table of tiles, whose rows count from the south, and a table of metadata. Either
- * may be a view. A view is a program, so only views that join and select are run, and only for a limited number of
- * steps. */
+/* MBTiles: a SQLite database with a table of tiles, whose tile rows count from the south, and a table of metadata.
+ * Either table may be a view. A view is a program, so camber runs only views that join and select, and only for a
+ * limited number of steps. */
 #include "archive/database.h"
 #include "archive/tile_set.h"
 
@@ -13,7 +13,7 @@ typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
     camber_context *context;
-    bool computes; /* one of its views asked for something that is not allowed */
+    bool computes; /* one of its views does something that is not allowed */
 } database;
 
 static int count_steps(void *user) {
@@ -119,7 +119,7 @@ static void keep_metadata_row(json_t *about, sqlite3_stmt *row) {
         json_object_set_new(about, name, json_string(value));
 }
 
-/* Sets without a table of metadata are read, too. */
+/* Reads the metadata, if there is a table of metadata. */
 static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
     sqlite3_stmt *rows = NULL;
@@ -200,8 +200,8 @@ static int compare_tiles(const void *left, const void *right) {
     return a->row > b->row ? -1 : a->row < b->row;
 }
 
-/* Sorts the tiles by rows in the table's order, from the south, and removes duplicates. Lines are drawn in the order in
- * which they are read. */
+/* Sorts the tiles by row in the table's order, from the south, and removes duplicates. The order matters, because lines
+ * are drawn in the order in which they are read. */
 static size_t sort_tiles(camber_tile_index *tiles, size_t count) {
     size_t kept = 0;
     if (count)

@@ -1,7 +1,7 @@
 /* Merges parts into one archive: checks whether they fit together, and passes them to a writer.
  *
- * Everything that does not fit is reported in one message, part by part: which parts of N are missing, which are given
- * twice, and which have another input, style, options or version. */
+ * If the parts do not fit together, one message says why: which of the N parts are missing, which are given twice, and
+ * which have another input, style, options or version. */
 #include "archive/archive.h"
 
 #include "camber_tiles.h"
@@ -36,8 +36,9 @@ static double number_of(const camber_archive *archive, const char *name) {
     return json_is_string(value) ? strtod(json_string_value(value), NULL) : json_number_value(value);
 }
 
-/* Tiles of two sizes do not make a map. Archives of other tools may not state their size. before and after surround the
- * number in the message. */
+/* Checks that the parts have the same number under this name, such as the size of their tiles, because tiles of two
+ * sizes do not make a map. Archives of other tools may not state it. before and after: the text around the number in
+ * the message. */
 static void compare_numbers(merging *m, const char *name, const char *before, const char *after) {
     const camber_archive *first = NULL;
     for (size_t i = 0; i < m->desc->part_count; i++) {
@@ -137,8 +138,8 @@ static void unite(camber_archive_desc *whole, const camber_archive *part) {
     bounds[3] = part->bounds[3] > bounds[3] ? part->bounds[3] : bounds[3];
 }
 
-/* Parts of one run are equal in everything but their tiles. For other archives, the texts of the first are used, and
- * the bounds are united; if there are several centres, the middle of the united bounds is used. */
+/* Parts of one run differ only in their tiles. For other archives, the texts of the first one are used, and the bounds
+ * are united; if the centres differ, the middle of the united bounds is used. */
 static camber_archive_desc describe(const merging *m, camber_archive_format format) {
     const camber_archive *first = m->parts[0];
     camber_archive_desc whole = {.path = m->desc->output,

@@ -1,8 +1,8 @@
-/* Writes files that appear either complete or not at all: all bytes are written and synced, and then the file is
- * renamed.
+/* Writes files that appear either complete or not at all: each file gets its final name after all its bytes are written
+ * and synced.
  *
- * Input: a context for messages, paths, bytes. A failure is reported in one line with the cause and what to do, and
- * leaves the old file or folder in place. */
+ * Input: paths and bytes, and a context for messages. A failure is reported in one line with the cause and what to do,
+ * and leaves the old file or folder in place. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #define _FILE_OFFSET_BITS 64
 
@@ -63,7 +63,7 @@ void camber_remove_tree(camber_context *context, const char *path) {
         nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* The name itself is stored in the folder, which is synced if the file system supports it. */
+/* Syncs the folder, which stores the file's name, if the file system supports this. */
 static void sync_folder(const char *path) {
     char folder[PATH_MAX];
     const char *slash = strrchr(path, '/');
@@ -79,8 +79,8 @@ static void sync_folder(const char *path) {
     close(opened);
 }
 
-/* rename cannot replace a folder by another one, so the old folder is moved aside first. It is moved back if the new
- * one fails. */
+/* rename cannot replace one folder by another, so the old folder is moved aside first. It is moved back if renaming the
+ * new folder fails. */
 static int replace_folder(camber_context *context, const char *whole, const char *path) {
     char aside[PATH_MAX];
     if (snprintf(aside, sizeof aside, "%s.camber-old", path) >= (int)sizeof aside)

@@ -1,5 +1,5 @@
-/* Files to which an archive is written. Each failure is reported in one line that names the file, the cause and what to
- * do. */
+/* Files to which an archive is written. Each failure is reported in one line that names the file and the cause, and
+ * says what to do. */
 #ifndef CAMBER_ARCHIVE_OUTPUT_FILE_H
 #define CAMBER_ARCHIVE_OUTPUT_FILE_H
 
@@ -15,7 +15,8 @@ camber_status camber_write_at(camber_context *context, const char *name, int fil
 camber_status camber_sync(camber_context *context, const char *name, int file);
 /* Syncs an open file, and closes it even if that fails. */
 camber_status camber_sync_and_close(camber_context *context, const char *name, int file);
-/* Renames a complete file or folder. force: it replaces whatever has that name; an old folder is removed. */
+/* Renames a complete file or folder. force: it replaces any file or folder that has that name, and an old folder is
+ * removed. */
 camber_status camber_give_name(camber_context *context, const char *whole, const char *path, bool force);
 /* Opens a new temporary file next to a path. path must stay valid until camber_output_end, which need not be called if
  * this fails. */

@@ -11,10 +11,11 @@
 
 enum { DEEPEST = 4 };
 
-/* Types of tiles; those between are pictures. */
+/* The format's numbers for types of tiles. The numbers between these two are pictures. */
 enum { VECTOR_TILES = 1, MAPLIBRE_TILES = 6 };
 
-/* Directories of real files have some hundred kilobytes. */
+/* The largest directory, and the largest range of other bytes, that is read. Directories of real files have some
+ * hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
 /* The number of budget steps for reading a directory. */
 static const uint64_t DIRECTORY_STEPS = 4096;
@@ -42,7 +43,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     for (int z = zoom - 1; z >= 0; z--) {
         const uint32_t half = UINT32_C(1) << (z & 31), right = x & half ? 1 : 0, down = y & half ? 1 : 0;
         along += ((uint64_t)half * half) * ((3 * right) ^ down);
-        /* Turns the curve for this quarter of the square. */
+        /* Rotates the curve for this quarter of the square. */
         if (!down) {
             if (right) {
                 x = half - 1 - (x & (half - 1));
@@ -146,7 +147,7 @@ static camber_status fail(const camber_tile_set *set, const char *why) {
                        why);
 }
 
-/* Reads a range of the file. *why is set if it ends past the end of the file. */
+/* Reads a range of the file. *why is set if the range ends past the end of the file. */
 static camber_status read_range(camber_tile_set *set, range at, size_t limit_bytes, camber_bytes *bytes,
                                 const char **why) {
     const archive *self = set->self;
@@ -212,7 +213,7 @@ static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
     return (range){entry->offset <= room ? self->header.leaves.offset + entry->offset : UINT64_MAX, entry->size};
 }
 
-/* Finds the last entry that begins at the number or before it, or NULL if there is none. */
+/* Returns the last entry that begins at the given number or before it, or NULL if there is none. */
 static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
     size_t low = 0, high = in->count;
     while (in->entries && low < high) {
@@ -267,7 +268,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
 typedef struct listing {
     camber_tile_set *set;
     int zoom;
-    uint64_t first, end; /* the first tile number of the zoom, and the one after the last */
+    uint64_t first, end; /* the first tile number of the zoom, and the number after its last tile */
     camber_tile_index *tiles;
     size_t count, capacity;
 } listing;
@@ -463,7 +464,7 @@ static camber_status read_metadata(camber_tile_set *set) {
     if (set->takes_any)
         set->about = json_loadb((const char *)bytes->data, bytes->size_bytes, 0, NULL);
     if (json_is_object(about)) {
-        /* The zooms and bounds in the header are set last, because they are authoritative. */
+        /* The zooms and bounds in the header take precedence, so they are set last. */
         json_object_del(about, "minzoom");
         json_object_del(about, "maxzoom");
         json_object_del(about, "bounds");

@@ -1,12 +1,12 @@
-/* The parts of a PMTiles file, for all code that reads or writes it. */
+/* The parts of a PMTiles file, for all code that reads or writes such files. */
 #ifndef CAMBER_ARCHIVE_PMTILES_H
 #define CAMBER_ARCHIVE_PMTILES_H
 
 #include "archive/tile_set.h"
 
 typedef struct camber_pmtiles_entry {
-    uint64_t number;     /* the number of its first tile */
-    uint64_t run_length; /* how many consecutive tiles have these bytes; 0: the entry is a leaf directory */
+    uint64_t number;     /* the number of the entry's first tile */
+    uint64_t run_length; /* how many consecutive tiles have these bytes; 0: the entry is for a leaf directory */
     uint64_t offset, size;
 } camber_pmtiles_entry;
 
@@ -47,7 +47,7 @@ typedef struct camber_pmtiles_directory {
 camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
                                    camber_pmtiles_directory *parsed, const char **why);
 
-/* ---- An open archive, as camber_pmtiles_open left it in a tile set ---- */
+/* ---- An open archive, in a tile set that camber_pmtiles_open filled ---- */
 
 typedef struct camber_pmtiles_file {
     int descriptor; /* owned by the set */
@@ -57,9 +57,9 @@ typedef struct camber_pmtiles_file {
 
 camber_pmtiles_file camber_pmtiles_get_file(const camber_tile_set *set);
 
-/* Receives the contents of the directories, in their order. A status other than CAMBER_OK ends the walk. */
+/* Receives the entries of the directories, in their order. A status other than CAMBER_OK ends the walk. */
 typedef struct camber_pmtiles_visitor {
-    uint64_t first, end; /* leaves without tiles from first to before end are not read */
+    uint64_t first, end; /* leaves that have no tiles with numbers from first to before end are not read */
     camber_status (*take_entry)(void *user, const camber_pmtiles_entry *entry);
     camber_status (*take_leaf)(void *user, const camber_pmtiles_entry *entry,
                                int depth); /* NULL: leaves are not reported */
@@ -67,7 +67,7 @@ typedef struct camber_pmtiles_visitor {
 } camber_pmtiles_visitor;
 
 camber_status camber_pmtiles_walk(camber_tile_set *set, const camber_pmtiles_visitor *visitor);
-/* Reads the stored bytes of an entry. *why: NULL, or what is wrong with its range. */
+/* Reads the stored bytes of an entry. *why: NULL, or what is wrong with the entry's range. */
 camber_status camber_pmtiles_read_entry(camber_tile_set *set, const camber_pmtiles_entry *entry, camber_bytes *bytes,
                                         const char **why);
 

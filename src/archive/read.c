@@ -1,8 +1,8 @@
 /* Reads archives of tiles: their metadata, and their tiles one after the other.
  *
- * The readers of PMTiles and MBTiles are those of vector tiles (tile_set.h); this file asks them for tiles of any type.
+ * PMTiles and MBTiles are read by the readers of vector tiles (tile_set.h), which this file asks for tiles of any type.
  * Metadata are converted to one form: the values that each format stores differently (bounds, centre, zooms, format)
- * are taken out of them. */
+ * become fields of the archive. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/archive.h"
@@ -202,7 +202,7 @@ static camber_status take_entry(void *user, const camber_pmtiles_entry *entry) {
     return walk->take_tile(walk->user, &tile);
 }
 
-/* Computes the tile's number from the address as it is stored. */
+/* Computes the tile's number from its address as the archive stores it. */
 static void number_tile(camber_archive_tile *tile, bool south_first) {
     const int64_t side = tile->zoom >= 0 && tile->zoom <= CAMBER_LARGEST_TILE_ZOOM ? INT64_C(1) << tile->zoom : 0;
     tile->run_length = 1;
@@ -271,7 +271,7 @@ typedef struct sniffing {
     bool done;
 } sniffing;
 
-/* One tile is enough, so the walk is ended by a failure. */
+/* Returns an error in order to end the walk, because one tile is enough. */
 static camber_status sniff_tile(void *user, const camber_archive_tile *tile) {
     sniffing *self = user;
     camber_archive *archive = self->archive;

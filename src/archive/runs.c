@@ -1,8 +1,8 @@
-/* Makes one ascending list of runs from the tiles that were added and from those that other archives contain.
+/* Makes one ascending list of runs from the tiles that were added and from the tiles of other archives.
  *
- * Input: both lists, in the order in which they arrived. Output: disjoint runs, of which neighbours have different
- * contents, or the first number for which two archives have different contents. Runs are never expanded, so that a sea
- * of a million tiles stays one item. */
+ * Input: both lists, in the order in which they arrived. Output: disjoint runs, in which neighbouring runs have
+ * different contents, or the first tile number for which two archives have different contents. Runs are never expanded,
+ * so that a sea of a million tiles stays one item. */
 #include "archive/writer.h"
 
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static void sort(camber_archive_runs *runs) {
         }
 }
 
-/* Added tiles are runs of length 1. */
+/* Keeps only the last tile with each number. Added tiles are runs of length 1. */
 static void keep_last(camber_archive_runs *runs) {
     size_t kept = 0;
     for (size_t i = 0; i < runs->count; i++) {

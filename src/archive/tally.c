@@ -1,6 +1,6 @@
-/* Counts the contents of an archive and shows them: tiles and bytes by zoom, entries, distinct contents.
+/* Counts what an archive contains and shows the numbers: tiles and bytes by zoom, entries, distinct contents.
  *
- * Input: the tiles of a walk. In PMTiles a content is a range of the file that several tiles may share, so ranges are
+ * Input: the tiles of a walk. In PMTiles, a content is a range of the file that several tiles may share, so ranges are
  * collected and sorted. Memory: 24 bytes per entry. */
 #include "archive/tally.h"
 
@@ -75,7 +75,7 @@ void camber_tally_free(camber_tally *tally) {
 /* ---- Showing ---- */
 
 typedef struct shown {
-    camber_tiles_info info; /* the part that the caller sees */
+    camber_tiles_info info; /* the part that is visible to the caller */
     camber_context *context;
     camber_archive *archive;
     char *metadata;
@@ -92,7 +92,7 @@ static camber_status count_row(void *user, sqlite3_stmt *row) {
     return CAMBER_OK;
 }
 
-/* Normalised MBTiles store each content once. */
+/* Counts the images of a normalised MBTiles file, which stores each content once. */
 static camber_status count_images(camber_archive *archive, uint64_t *contents) {
     uint64_t count = 0;
     bool missing = false;

@@ -1,4 +1,4 @@
-/* Used by the readers of all tile sets: growing buffers, decompression, and the metadata of a set. */
+/* Functions for the readers of all tile sets: growing buffers, decompression, and the metadata of a set. */
 #include "archive/tile_set.h"
 #include <errno.h>
 #include <math.h>
@@ -109,7 +109,7 @@ static bool read_bounds(const json_t *json, double bounds[4]) {
            bounds[1] < bounds[3];
 }
 
-/* A later description of a set replaces an earlier one. */
+/* If a set is described again, the new attribution replaces the old one. */
 static camber_status take_attribution(camber_tile_set *set, const json_t *about) {
     const char *text = json_string_value(json_object_get(about, "attribution"));
     char *copy = text ? camber_copy_string(set->context, text) : NULL;

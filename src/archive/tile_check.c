@@ -1,5 +1,5 @@
-/* Checks tiles by the structure of their formats: signatures, lengths, checksums. Pixels are not decoded: in PNG a
- * checksum covers them, and in WebP their length must match that of the file. */
+/* Checks the structure of tiles: signatures, lengths, checksums. Pixels are not decoded: in a PNG, a checksum covers
+ * them, and in a WebP, their length must match the length of the file. */
 #include "archive/tile_check.h"
 
 #include <zlib.h>

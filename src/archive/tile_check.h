@@ -4,12 +4,12 @@
 
 #include "archive/archive.h"
 
-/* Returns what is wrong with a tile's decompressed bytes, or NULL. For pictures, sets the size in px; for other types
- * it is 0. */
+/* Returns a description of a defect in a tile's decompressed bytes, or NULL if there is none. For pictures, sets the
+ * size in px; for other types, sets it to 0. */
 const char *camber_tile_check(camber_tile_type type, const unsigned char *bytes, size_t size_bytes, uint32_t *width,
                               uint32_t *height);
 
-/* Returns the type that the stored bytes look like, or OTHER. Compressed bytes are taken for a vector tile. */
+/* Returns the type that the stored bytes seem to have, or OTHER. Compressed bytes count as a vector tile. */
 camber_tile_type camber_tile_sniff(const unsigned char *bytes, size_t size_bytes);
 
 #endif

@@ -6,8 +6,8 @@
 
 enum { LAYERS = 6 };
 
-/* Any of these layers, or this field in any layer, identifies the schema. Names that anybody may use, such as roads or
- * water, identify none. Protomaps 3 comes first, because it also has the layer of Protomaps 4. */
+/* Any of these layers, or this field in any layer, identifies the schema. Names that anybody may use, such as "roads"
+ * or "water", do not identify a schema. Protomaps 3 comes first, because it also has the layer of Protomaps 4. */
 static const struct {
     const char *name, *layers[LAYERS], *field;
 } schemas[] = {

@@ -1,4 +1,5 @@
-/* Sets of vector tiles: code that folders of files, MBTiles and PMTiles share, and the folders themselves.
+/* Sets of vector tiles: code that all kinds of sets share (files by a template, MBTiles and PMTiles), and the code for
+ * files by a template.
  *
  * Input: a path or a template of paths. Output: the decompressed bytes of a tile, and the metadata of the set: zooms,
  * bounds, attribution, layers. The budget limits how much a tile may decompress to.
@@ -11,7 +12,8 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* The limit for one decompressed tile: real tiles have at most a few megabytes, unlike decompression bombs. */
+/* The limit for one decompressed tile. Real tiles have at most a few megabytes, but a decompression bomb may have any
+ * size. */
 static const size_t LARGEST_TILE_BYTES = (size_t)64 << 20;
 
 /* ---- Decompression ---- */
@@ -20,7 +22,8 @@ static bool is_compressed(const camber_bytes *bytes) {
     const unsigned char *b = bytes->data;
     if (bytes->size_bytes < 2)
         return false;
-    /* A zlib header. No valid tile begins with these bytes, which would be field 15 with wire type 0. */
+    /* The second test is for a zlib header. No valid tile begins with its bytes, which would be field 15 with wire type
+     * 0. */
     return (b[0] == 0x1f && b[1] == 0x8b) || (b[0] == 0x78 && (b[0] * 256 + b[1]) % 31 == 0);
 }
 
@@ -37,7 +40,7 @@ static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
     *out = 0;
 }
 
-/* Writes the text that replaces {...}. Returns false if the token is unknown and stays as it is. */
+/* Writes the text that replaces a token {...}. Returns false if the token is unknown, so that it stays as it is. */
 static bool expand_token(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
                          char out[40]) {
     const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;
@@ -99,7 +102,7 @@ static camber_status read_tile(int file, camber_bytes *bytes, const char *name) 
     return CAMBER_OK;
 }
 
-/* A missing tile is empty. */
+/* Reads a tile's file. If it does not exist, the tile is empty. */
 static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
@@ -182,7 +185,7 @@ static const struct {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* Returns KINDS if there is none. */
+/* Returns the index of the kind that has the path's extension, or KINDS if there is none. */
 static size_t find_kind(const char *path) {
     size_t kind = 0;
     while (kind < KINDS && !ends_with(path, kinds[kind].ending))

@@ -20,17 +20,17 @@ typedef struct camber_bytes {
 } camber_bytes;
 
 void camber_bytes_free(camber_bytes *bytes);
-/* Makes room for this many bytes, and sets size_bytes. */
+/* Makes room for size_bytes bytes, and sets the buffer's size to it. */
 bool camber_bytes_resize(camber_bytes *bytes, size_t size_bytes);
 
 typedef struct camber_tile_set camber_tile_set;
 
 /* The functions of one kind of set. */
 typedef struct camber_tile_set_calls {
-    /* Reads the tile as it is stored, which may be compressed. Its size is 0 if it does not exist. why: see
+    /* Reads the tile's bytes as they are stored, perhaps compressed. The size is 0 if the tile does not exist. why: see
      * camber_tile_set_get. */
     camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes, const char **why);
-    /* NULL: this kind cannot list its tiles. Free *tiles with camber_free. */
+    /* Lists the tiles of a zoom. Free *tiles with camber_free. NULL: this kind cannot list its tiles. */
     camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
     void (*close)(camber_tile_set *set);
 } camber_tile_set_calls;
@@ -38,7 +38,7 @@ typedef struct camber_tile_set_calls {
 struct camber_tile_set {
     const camber_tile_set_calls *calls;
     camber_context *context;
-    char *name;                /* in messages */
+    char *name;                /* for messages */
     camber_file_naming naming; /* whether the user or the style named its files */
     int min_zoom, max_zoom;
     double bounds[4]; /* west, south, east, north, degrees; the whole world if unknown */
@@ -47,7 +47,7 @@ struct camber_tile_set {
     bool takes_any;    /* tiles may have any type, and about is kept */
     json_t *about;     /* the unchanged metadata, an object. NULL: none, or not kept */
     json_t *layers;    /* an array of objects with an "id". NULL: unknown */
-    void *self;        /* data of the kind */
+    void *self;        /* data for this kind of set */
     camber_bytes raw;
 };
 
@@ -55,7 +55,7 @@ struct camber_tile_set {
  * (another format, or tiles that are pictures), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
                                    camber_tile_set **set);
-/* The same for tiles of any type, including pictures. */
+/* Does the same for tiles of any type, including pictures. */
 camber_status camber_tile_set_open_any(camber_context *context, const char *path, camber_file_naming naming,
                                        camber_tile_set **set);
 /* Whether the path has the extension of such a file. */
@@ -64,7 +64,7 @@ bool camber_tile_set_knows(const char *path);
 const char *camber_tile_set_format(size_t n);
 
 typedef struct camber_tile_template {
-    const char *name;     /* in messages */
+    const char *name;     /* for messages */
     const char *path;     /* with {z}, {x}, {y} or {-y}, {quadkey}, {prefix}, {ratio} */
     bool south_first;     /* scheme tms: the rows of {y} count from the south */
     bool high_resolution; /* {ratio} becomes @2x instead of nothing */
@@ -77,29 +77,29 @@ camber_status camber_tile_set_of_files(camber_context *context, const camber_til
  * vector_layers. Invalid values are ignored. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about);
 
-/* Reads and decompresses the tile. Its size is 0 if it does not exist. *why: NULL, or what is wrong with this tile.
- * Returns CAMBER_ERROR_INPUT if the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the budget),
- * CAMBER_ERROR_MEMORY. */
+/* Reads and decompresses a tile. Its size is 0 if the tile does not exist. *why: NULL, or the reason why this tile
+ * cannot be used. Returns CAMBER_ERROR_INPUT if the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the
+ * budget), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                                   const char **why);
 /* Lists the tiles of a zoom, which count against the budget for tiles. */
 camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
 void camber_tile_set_close(camber_tile_set *set);
 
-/* ---- For the kinds of sets ---- */
+/* ---- Functions for the kinds of sets ---- */
 
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path);
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path);
-/* Calls take_row for each row of a query to an MBTiles file, which must be a SELECT. Each row may take as many steps as
- * a whole set of features does elsewhere. A status other than CAMBER_OK ends the query. missing: NULL, or becomes true
- * if the query does not match the tables, which then is not a failure. */
+/* Calls take_row for each row of a query to an MBTiles file, which must be a SELECT. The budget of steps for each row
+ * is as large as for a whole set of features elsewhere. A status other than CAMBER_OK ends the query. missing: may be
+ * NULL; otherwise it becomes true if the query does not match the tables, and this is not a failure. */
 struct sqlite3_stmt;
 camber_status camber_mbtiles_query(camber_tile_set *set, const char *sql,
                                    camber_status (*take_row)(void *user, struct sqlite3_stmt *row), void *user,
                                    bool *missing);
 
-/* Decompresses gzip or zlib within the budget, to at most limit_bytes. *why: NULL, or why it failed. Returns
- * CAMBER_ERROR_LIMIT (the budget), CAMBER_ERROR_MEMORY. */
+/* Decompresses gzip or zlib bytes within the budget, to at most limit_bytes. *why: NULL, or the reason why it failed.
+ * Returns CAMBER_ERROR_LIMIT (the budget), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_gunzip(camber_tile_set *set, const camber_bytes *packed, size_t limit_bytes,
                                      camber_bytes *out, const char **why);
 

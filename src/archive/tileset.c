@@ -1,8 +1,8 @@
 /* Writes a tileset of 3D Tiles 1.1 with implicit tiling: a quadtree whose levels are zooms.
  *
- * Input: the runs of tiles of a folder. Output: tileset.json, and subtrees, which have one bit for each tile: LEVELS
- * levels below a root, level by level, in Morton order. The main idea: at each zoom, the tiles below a root are
- * consecutive along the Hilbert curve, so runs are found by their numbers, and no table of all tiles is needed.
+ * Input: the runs of tiles in a folder. Output: tileset.json, and subtrees. A subtree has one bit for each tile on the
+ * LEVELS levels from its root on, level by level, in Morton order. The main idea: at each zoom, the tiles below a root
+ * are consecutive along the Hilbert curve, so runs are found by their numbers, and no table of all tiles is needed.
  *
  * The root is the square of Web Mercator, x east, y north, in metres. Its second axis points south, so that rows count
  * from the north, as they do in the folder. */
@@ -16,8 +16,8 @@
 
 enum { MOST_LEVELS = 9 };
 static const double WORLD_M = 40075016.685578488;
-/* A viewer of 3D Tiles switches to the next zoom if the error is more than 16 px, which is at twice the size of a tile.
- */
+/* A viewer of 3D Tiles switches to the next zoom if the error is more than 16 px, which is the case if it shows a tile
+ * at twice its size. */
 static const double ERROR_PX = 16.0;
 
 /* The roots of subtrees of a level, as ascending positions along the Hilbert curve. */
@@ -30,9 +30,9 @@ typedef struct tileset {
     const camber_archive_plan *plan;
     camber_tileset_writer write;
     void *user;
-    int levels;    /* of a subtree */
+    int levels;    /* the number of levels of a subtree */
     uint8_t *bits; /* the bits of one subtree: tiles, contents, children, each aligned to 8 bytes */
-    size_t bytes;  /* for the tiles, and again for the contents */
+    size_t bytes;  /* how many bytes there are for the tiles, and again for the contents */
     size_t child_bytes;
 } tileset;
 
@@ -51,7 +51,7 @@ static int compare(const void *left, const void *right) {
 
 /* ---- Roots ---- */
 
-/* Lists the ancestors on a level of all tiles on that level and below. */
+/* Lists the roots on a level: the archive's tiles on that level, and the ancestors of its tiles below. */
 static camber_status list_roots(const tileset *t, int level, roots *list) {
     list->count = 0;
     for (size_t i = 0; i < t->plan->run_count; i++) {
@@ -95,8 +95,8 @@ static void set_bit(uint8_t *bits, uint64_t at) {
     bits[at / 8] |= (uint8_t)(1u << (at % 8));
 }
 
-/* Sets the bits of a tile and of its ancestors up to the root. place: its position along the Hilbert curve of its zoom.
- */
+/* Sets the bits of a tile and of its ancestors up to the root. place: the tile's position along the Hilbert curve of
+ * its zoom. */
 static void set_tile(const tileset *t, int level, int zoom, uint64_t place, bool content) {
     uint32_t column, row;
     camber_pmtiles_locate(place, zoom, &column, &row);
@@ -106,12 +106,12 @@ static void set_tile(const tileset *t, int level, int zoom, uint64_t place, bool
     if (content)
         set_bit(t->bits + t->bytes, (((uint64_t)1 << (2 * depth)) - 1) / 3 + own);
     else
-        set_bit(t->bits + 2 * t->bytes, own); /* a child, which is the root of another subtree */
+        set_bit(t->bits + 2 * t->bytes, own); /* the tile is a child of this subtree, and the root of another */
     for (unsigned k = content ? depth + 1 : depth; k-- > 0;)
         set_bit(t->bits, (((uint64_t)1 << (2 * k)) - 1) / 3 + (own >> (2 * (depth - k))));
 }
 
-/* Returns the first run that ends after a number. */
+/* Returns the index of the first run whose last tile has the given number or a higher one. */
 static size_t find_run(const tileset *t, uint64_t number) {
     size_t low = 0, high = t->plan->run_count;
     while (low < high) {

@@ -1,8 +1,8 @@
 /* The journal: a header with a key that identifies the archive, then records of 32 bytes.
  *
  * The records of a unit are written when it ends, after its contents. A last record closes the unit with a hash of all
- * records before it. If a process dies, only the end of its journal can be torn. A reader accepts a unit only if the
- * hash of its records and the hashes of all its contents match. */
+ * records before it. If a process dies, only the end of its journal can be incomplete. A reader accepts a unit only if
+ * the hash of its records and the hashes of all its contents match. */
 #define _XOPEN_SOURCE 700 /* pread, ftruncate */
 #define _FILE_OFFSET_BITS 64
 
@@ -76,14 +76,14 @@ typedef struct reading {
     camber_units *units;
     camber_contents *contents;
     const camber_unit_taker *taker;
-    uint64_t contents_bytes; /* of the units that are complete */
+    uint64_t contents_bytes; /* the end of the contents of all complete units */
     unsigned char *bytes;
     size_t capacity;
     uint32_t *found; /* the contents of the pending records */
     size_t found_capacity;
 } reading;
 
-/* Reads up to count records after those that were read already. */
+/* Reads up to count records from an offset on. Returns how many were read. */
 static size_t read_records(const camber_units *units, uint64_t offset, camber_unit_record *records, size_t count) {
     ssize_t got;
     do
@@ -92,7 +92,7 @@ static size_t read_records(const camber_units *units, uint64_t offset, camber_un
     return got > 0 ? (size_t)got / sizeof *records : 0;
 }
 
-/* Reads the content of a record, and looks it up or registers it. *whole: it exists, and its hash matches. */
+/* Reads the content of a record, and looks it up or registers it. *whole: the content exists, and its hash matches. */
 static camber_status take_content(reading *r, const camber_unit_record *record, uint64_t *end, uint32_t *index,
                                   bool *whole) {
     const uint64_t range_end = record->offset + record->size_bytes;
@@ -114,7 +114,7 @@ static camber_status take_content(reading *r, const camber_unit_record *record, 
     return status;
 }
 
-/* Accepts the pending records, which last closes, if they are valid. */
+/* Accepts the pending records if they are valid. last: the record that closes their unit. */
 static camber_status take_unit(reading *r, const camber_unit_record *last, bool *whole) {
     camber_units *units = r->units;
     const size_t count = units->pending_count;
@@ -188,7 +188,7 @@ static camber_status resume(reading *r) {
     camber_unit_record *records = camber_alloc(r->units->context, READ_AT_ONCE, sizeof *records);
     if (!records)
         return CAMBER_ERROR_MEMORY;
-    /* The size of the file is not known yet, so contents are read up to its end. */
+    /* It is not known yet how much of the file is valid, so contents are read up to its end. */
     camber_saved_log kept;
     r->contents->written_bytes = INT64_MAX;
     camber_log_demote_errors(r->units->context, &kept);

@@ -7,13 +7,13 @@
 typedef enum camber_unit_kind {
     CAMBER_UNIT_TILE = 1,
     CAMBER_UNIT_REMOVED, /* the archive no longer has this tile */
-    CAMBER_UNIT_END,     /* number is that of the unit, offset the end of store 0, hash covers all records before */
+    CAMBER_UNIT_END,     /* number: the unit's; offset: the end of store 0; hash: covers all records before */
 } camber_unit_kind;
 
-/* The record's layout in the file. The same machine writes and reads it. */
+/* A record as it is laid out in the file. The machine that writes it also reads it. */
 typedef struct camber_unit_record {
     uint32_t kind, size_bytes;
-    uint64_t number, offset, hash; /* the content's */
+    uint64_t number, offset, hash; /* offset and hash: the content's */
 } camber_unit_record;
 
 typedef struct camber_units {
@@ -21,13 +21,13 @@ typedef struct camber_units {
     int descriptor;
     const char *name;
     uint64_t written_bytes, chain;
-    camber_unit_record *pending; /* of the current unit */
+    camber_unit_record *pending; /* the records of the current unit */
     size_t pending_count, pending_capacity;
     uint64_t *done; /* units that an earlier run finished, ascending */
     size_t done_count, done_capacity;
 } camber_units;
 
-/* Receives the tiles that an earlier run wrote. content: CAMBER_NO_CONTENT if the tile was removed. */
+/* Receives a tile that an earlier run wrote. content: CAMBER_NO_CONTENT if the tile was removed. */
 typedef struct camber_unit_taker {
     camber_status (*take_tile)(void *user, uint64_t number, uint32_t content);
     void *user;

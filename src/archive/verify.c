@@ -36,7 +36,7 @@ static void check_bounds(camber_verify *v) {
     camber_verify_find_boxes(v);
 }
 
-/* Compares the stated zooms with those of the tiles. */
+/* Compares the stated zooms with the zooms of the tiles. */
 static void check_zooms(camber_verify *v) {
     int low = -1, high = -1;
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {
@@ -83,7 +83,7 @@ static void check_sum(camber_verify *v) {
 
 static camber_status verify(camber_verify *v) {
     camber_status status = CAMBER_ERROR_INPUT;
-    (void)camber_archive_sniff(v->archive); /* if it fails, the walk below fails, too */
+    (void)camber_archive_sniff(v->archive); /* if this fails, the walk below fails, too */
     if (v->archive->sniffed && v->archive->format != CAMBER_ARCHIVE_FOLDER)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s, and its tiles look like %s",
                            v->archive->format == CAMBER_ARCHIVE_PMTILES ? "the header names no type of tiles"
@@ -103,7 +103,7 @@ static camber_status verify(camber_verify *v) {
     return status;
 }
 
-/* A log that keeps the last error, because damage that prevents reading is also a finding. */
+/* Keeps the last error that was logged, because damage that prevents reading is also a finding. */
 typedef struct kept_log {
     char error[1024];
 } kept_log;
@@ -115,7 +115,7 @@ static void keep_error(void *user, camber_log_level level, const char *message) 
 }
 
 typedef struct found {
-    camber_tiles_findings findings; /* the part that the caller sees */
+    camber_tiles_findings findings; /* the part that is visible to the caller */
     camber_context *context;
 } found;
 

@@ -34,8 +34,8 @@ typedef struct camber_verify {
     camber_bytes bytes, unpacked;
     camber_verify_box boxes[CAMBER_LARGEST_TILE_ZOOM + 1]; /* the tiles that the bounds touch, by zoom */
     camber_checksum checksum;
-    uint64_t flipped, outside; /* tiles outside the bounds, and how many of them would be inside if rows counted from
-                                  the other side */
+    uint64_t flipped, outside; /* how many tiles are outside the bounds, and how many of these would be inside if rows
+                                  counted from the other side */
 } camber_verify;
 
 CAMBER_PRINTF(4, 5)

@@ -1,5 +1,5 @@
-/* Verifies PMTiles: all that the specification and its reference tool require of the header and the directories, and
- * every content that a directory refers to. */
+/* Verifies PMTiles files: the header and the directories, with all rules of the specification and its reference tool,
+ * and every content that a directory refers to. */
 #include "archive/pmtiles.h"
 #include "archive/verify.h"
 
@@ -9,9 +9,9 @@ typedef struct entry_walk {
     camber_verify *v;
     camber_pmtiles_header header;
     bool any;
-    uint64_t next;        /* the number after the last entry */
+    uint64_t next;        /* the number after the tiles of the last entry */
     uint64_t placed;      /* the end of the contents of all entries so far */
-    uint64_t leaf_number; /* the lowest number that the leaf may contain */
+    uint64_t leaf_number; /* the lowest tile number that the leaf may contain */
     uint64_t leaf_bytes;
     bool in_leaf, unordered, deep;
 } entry_walk;
@@ -80,7 +80,8 @@ static camber_status take_leaf(void *user, const camber_pmtiles_entry *entry, in
     return CAMBER_OK;
 }
 
-/* Clustered: each content comes after all earlier ones, or is one of them. */
+/* Checks the order of contents. In a clustered archive, each content comes after all earlier ones, or is one of
+ * them. */
 static void check_order(entry_walk *walk, const camber_archive_tile *tile, const char *name) {
     if (tile->offset == walk->placed)
         walk->placed += tile->size_bytes;
@@ -124,14 +125,14 @@ static camber_status take_entry(void *user, const camber_pmtiles_entry *entry) {
 
 /* ---- Contents ---- */
 
-/* A count of 0 means that it is unknown. */
+/* Compares a count in the header with the real one. 0 in the header means that the count is unknown. */
 static void check_count(camber_verify *v, const char *name, uint64_t told, uint64_t counted) {
     if (told && told != counted)
         camber_verify_tell(v, CAMBER_VERIFY_ARCHIVE, true, "%s: the header says %" PRIu64 ", but there are %" PRIu64,
                            name, told, counted);
 }
 
-/* The ranges of contents must leave no gaps and must not overlap. */
+/* Checks the ranges of contents, which must leave no gaps and must not overlap. */
 static void check_places(camber_verify *v, uint64_t tiles_bytes) {
     uint64_t end = 0, unused = 0;
     size_t overlaps = 0;

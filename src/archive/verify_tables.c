@@ -1,4 +1,4 @@
-/* Verifies MBTiles and folders: tables, indices, metadata, names, tilesets, and each tile. */
+/* Verifies MBTiles files and folders: tables, indices, metadata, names, tilesets, and each tile. */
 #define _XOPEN_SOURCE 700
 
 #include "archive/folder.h"
@@ -52,7 +52,7 @@ typedef struct tables {
     camber_verify *v;
     bool has_index, has_format, has_name, has_bounds, has_zooms;
     bool normal;   /* it has the tables images and map */
-    uint64_t *ids; /* first the hashes of the ids in images, then of those in map */
+    uint64_t *ids; /* hashes of the ids in the table images, and after them of the ids in map */
     size_t count, capacity;
 } tables;
 
@@ -61,7 +61,7 @@ static const char *text_at(sqlite3_stmt *row, int column) {
     return text ? text : "";
 }
 
-/* Looks for an index on the three columns of tiles, or of the table on which the view is based. */
+/* Looks for an index on the three columns of the table tiles, or of the table map if tiles is a view. */
 static camber_status take_schema(void *user, sqlite3_stmt *row) {
     tables *t = user;
     const char *type = text_at(row, 0), *table = text_at(row, 1), *sql = text_at(row, 2);
@@ -124,7 +124,7 @@ static bool has_id(const uint64_t *ids, size_t count, uint64_t id) {
     return count && bsearch(&id, ids, count, sizeof *ids, compare_ids) != NULL;
 }
 
-/* Normalised: each image must belong to a tile, and each tile must have its image. */
+/* Checks a normalised file: each image must belong to a tile, and each tile must have its image. */
 static camber_status check_images(tables *t) {
     bool missing = false;
     camber_tile_set *set = t->v->archive->set;

@@ -64,7 +64,7 @@ static void check_place(camber_verify *v, uint64_t number) {
     camber_verify_tell(v, CAMBER_VERIFY_BOUNDS, true, "tile %s is outside the bounds", name);
 }
 
-/* Long runs are mostly seas, so only their first tiles and the last one are checked. */
+/* In a long run, only the first tiles and the last one are checked, because most long runs are seas. */
 void camber_verify_bounds(camber_verify *v, const camber_archive_tile *tile) {
     if (!v->archive->has_bounds || tile->outside)
         return;
@@ -125,7 +125,7 @@ camber_status camber_verify_bytes(camber_verify *v, const char *name, const camb
     return CAMBER_OK;
 }
 
-/* Bounds are rounded to 10^-7 degrees. */
+/* The slack is for bounds that are rounded to 10^-7 degrees. */
 void camber_verify_find_boxes(camber_verify *v) {
     const double *b = v->archive->bounds;
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++) {

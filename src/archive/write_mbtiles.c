@@ -1,8 +1,9 @@
-/* Writes normalised MBTiles 1.3: images has each content once, map has the tiles, and the view tiles joins the two.
+/* Writes normalised MBTiles 1.3: the table images has each content once, the table map has the tiles, and the view
+ * tiles joins the two.
  *
- * Rows are inserted in the order of tile numbers, so that equal tiles make equal files; each transaction has many rows.
- * Indices are created at the end. SQLite keeps no journal, because the file gets its name only after it is complete and
- * synced. */
+ * Rows are inserted in the order of tile numbers, so that equal tiles make equal files. Each transaction inserts many
+ * rows. Indices are created at the end. SQLite keeps no journal, because the file gets its name only after it is
+ * complete and synced. */
 #include "archive/output_file.h"
 #include "archive/pmtiles.h"
 #include "archive/writer.h"
@@ -21,7 +22,7 @@ typedef struct writing {
     const camber_archive_plan *plan;
     sqlite3 *handle;
     sqlite3_stmt *put_image, *put_tile;
-    uint32_t *ids; /* by content: the id, in the order of their first tiles; 0: not written yet */
+    uint32_t *ids; /* by content: its id; ids are in the order of the contents' first tiles; 0: not written yet */
     uint32_t image_count;
     uint64_t row_count;
     camber_bytes bytes;
@@ -90,7 +91,7 @@ static camber_status put_row(const writing *w, sqlite3_stmt *put, const char *na
     return status;
 }
 
-/* MBTiles puts the layers and statistics of vector tiles into one text with JSON. */
+/* Moves the layers and statistics of vector tiles into one text with JSON, as MBTiles requires. */
 static void fold_layers(json_t *metadata) {
     static const char *const names[] = {"vector_layers", "tilestats"};
     json_t *inner = json_object();
@@ -201,7 +202,7 @@ static camber_status write_rows(writing *w) {
 
 camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan) {
     writing w = {.plan = plan, .bytes.context = plan->context};
-    /* Runs of a malicious archive could expand to rows without end. */
+    /* The runs of a malicious archive could expand to an endless number of rows. */
     if (plan->tile_count > MOST_TILES)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                            "%s: %" PRIu64 " tiles are too many rows for MBTiles, which may have %d; write PMTiles",

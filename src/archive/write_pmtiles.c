@@ -1,8 +1,9 @@
 /* Writes clustered PMTiles 3: header, root directory, tiles from byte 16384 on, metadata, leaf directories.
  *
  * Contents are stored in the order in which tiles first use them. If the writer's own file already has them in this
- * order, it becomes the archive, and no tile is copied. Runs become entries. If a root directory with all entries does
- * not fit into the first 16 KB, entries move to leaves, which grow until the root directory of the leaves fits. */
+ * order, this file becomes the archive, and no tile is copied. Runs become entries. If a root directory with all
+ * entries does not fit into the first 16 KB, entries move to leaves, which grow until the root directory of the leaves
+ * fits. */
 #define _XOPEN_SOURCE 700 /* pread, pwrite */
 #define _FILE_OFFSET_BITS 64
 
@@ -45,7 +46,7 @@ static unsigned char *put_varint(unsigned char *at, uint64_t value) {
     return at;
 }
 
-/* The gzip header that zlib writes contains no time, so equal input gives equal bytes. */
+/* Equal input gives equal bytes, because the gzip header that zlib writes contains no time. */
 camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to) {
     z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes, .avail_in = (uInt)size_bytes};
     const size_t before = to->size_bytes;
@@ -96,7 +97,8 @@ static camber_status write_leaves(const camber_archive_plan *plan, packed *p, si
 }
 
 static camber_status write_directories(const camber_archive_plan *plan, packed *p) {
-    /* Readers decompress the root for each first tile, so it is kept small even if many entries would fit. */
+    /* A reader decompresses the root directory before its first tile, so the root is kept small even if many entries
+     * would fit. */
     if (plan->run_count <= ROOT_BYTES) {
         const camber_status status = append_directory(plan, p, p->entries, plan->run_count, &p->root);
         if (status != CAMBER_OK || p->root.size_bytes <= ROOT_BYTES)
@@ -113,7 +115,7 @@ static camber_status write_directories(const camber_archive_plan *plan, packed *
     }
 }
 
-/* Assigns each content its offset, in the order in which tiles first use it. */
+/* Assigns offsets to the contents, in the order in which tiles first use them. */
 static camber_status place(const camber_archive_plan *plan, packed *p) {
     const size_t count = plan->contents->count;
     p->offsets = camber_alloc(plan->context, count, sizeof *p->offsets);
@@ -178,7 +180,7 @@ static void write_header(const camber_archive_plan *plan, const packed *p, unsig
 
 /* ---- Tiles ---- */
 
-/* Copies ranges of a store through a buffer, which is written whenever it is full. */
+/* The state of copying ranges of a store through a buffer, which is written whenever it is full. */
 typedef struct copying {
     const camber_archive_plan *plan;
     int file;
@@ -210,7 +212,7 @@ static camber_status copy_range(copying *c, uint32_t store, uint64_t offset, uin
     return CAMBER_OK;
 }
 
-/* Contents that follow each other directly in a store are copied as one range. */
+/* Copies the contents to the archive. Contents that follow each other directly in a store are copied as one range. */
 static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p, int file) {
     copying c = {.plan = plan, .file = file, .offset = CAMBER_STORE_BEGIN};
     const camber_content *items = plan->contents->items;
@@ -278,8 +280,8 @@ static camber_status write_copy(const camber_archive_plan *plan, const packed *p
     return status;
 }
 
-/* Gives the file of tiles a second name. The first name stays, so that an interrupted run finds the file by it. Some
- * file systems do not support this, and the first name may be a link to another folder. */
+/* Gives the file of tiles a second name. The first name stays, so that an interrupted run finds the file by it. Returns
+ * false if the file system does not support this, or if the first name is a link that leads to another folder. */
 static bool give_second_name(const camber_archive_plan *plan) {
     const camber_content_store *own = &plan->contents->stores[0];
     struct stat first, second;

@@ -1,10 +1,10 @@
 /* The writer of archives: accepts tiles in any order, and writes them in one order.
  *
  * Two files next to the archive collect the tiles: one has their bytes, each content once, and the other is a journal
- * of finished units. When all tiles are there, they are sorted by number (zoom, then the Hilbert curve), and runs are
- * joined. A function for the format then writes the archive to a third path next to it, which is renamed to the
- * archive's path. PMTiles whose tiles arrived in order are not written again: the first file becomes the archive, and
- * the third path is only a second name of it. */
+ * of finished units. After the last tile was added, the tiles are sorted by number (by zoom, then along the Hilbert
+ * curve), and runs are joined. A function for the format then writes the archive to a third path next to it, which is
+ * renamed to the archive's path. A PMTiles archive whose tiles arrived in order is not written again: the first file
+ * becomes the archive, and the third path is only a second name for it. */
 #define _DEFAULT_SOURCE /* flock */
 #define _FILE_OFFSET_BITS 64
 
@@ -44,7 +44,7 @@ struct camber_archive_writer {
     camber_archive_runs added, taken;
     taken_archive *archives;
     size_t archive_count, archive_capacity;
-    uint64_t removed; /* tiles of the taken archives that are missing from the finished one */
+    uint64_t removed; /* how many tiles of the taken archives the finished archive lacks */
     bool done, keeps; /* keeps: a unit was finished, so the temporary files stay */
 };
 
@@ -66,15 +66,16 @@ static bool leads_to(const char *name, int file) {
            opened.st_dev == there.st_dev;
 }
 
-/* Whether the locked file of tiles has already become the archive, which happens if a run is killed at its very end.
- * Then removes its temporary name. */
+/* Whether the locked file of tiles has already become the archive, which happens if a run is killed at its very end. If
+ * so, removes the file's temporary name. */
 static bool is_archive(const camber_archive_writer *writer, int file) {
     struct stat opened;
     (void)unlink(writer->temporary_paths[TEMPORARY_WHOLE]);
     return fstat(file, &opened) != 0 || opened.st_nlink > 1 || leads_to(writer->path, file);
 }
 
-/* Opens and locks a file. The writer that had it may have removed it between the two steps. */
+/* Opens and locks the file of tiles. Between the two steps, another writer that had the lock may have removed the
+ * file. */
 static camber_status open_locked(camber_archive_writer *writer) {
     const char *name = writer->temporary_paths[TEMPORARY_TILES];
     for (int attempt = 0; attempt < 100; attempt++) {
@@ -99,8 +100,8 @@ static camber_status open_locked(camber_archive_writer *writer) {
     return camber_output_fail(writer->context, name, EBUSY);
 }
 
-/* A run that was killed just after it completed its archive has left its temporary files. The next writer that notices
- * removes them. */
+/* Opens temporary files that are left from a run that was killed just after it completed its archive. The next writer
+ * that finds them removes them. */
 static void open_leftovers(camber_archive_writer *writer) {
     camber_saved_log kept;
     struct stat about;
@@ -122,7 +123,7 @@ static camber_status fail_existing(camber_archive_writer *writer, const camber_a
                        names);
 }
 
-/* A folder is replaced with everything in it, so it must not contain anything but an archive of tiles. */
+/* Checks that a folder contains nothing but an archive of tiles, because everything in the folder is replaced. */
 static camber_status look_at_folder(camber_archive_writer *writer, const struct stat *about) {
     struct stat leads_to;
     if (S_ISLNK(about->st_mode) && stat(writer->path, &leads_to) == 0 && S_ISDIR(leads_to.st_mode))
@@ -335,7 +336,7 @@ typedef struct taking {
     size_t count, capacity;
     uint32_t store;
     camber_bytes plain, packed; /* a tile whose compression differs from the archive's */
-    camber_checksum checksum;   /* of a part */
+    camber_checksum checksum;   /* the checksum of a part's tiles */
     camber_bytes window;        /* bytes of the file's tiles, from window_offset on */
     uint64_t window_offset, tiles_bytes;
 } taking;
@@ -355,8 +356,8 @@ static camber_status take_run(taking *t, const taken_entry *entry, uint32_t cont
     return CAMBER_OK;
 }
 
-/* Compresses with gzip. MBTiles and folders should have vector tiles with gzip, but some tools write uncompressed tiles
- * or use zlib's header. */
+/* Compresses a tile with gzip, unless it already is. The vector tiles in MBTiles and folders should be compressed with
+ * gzip, but some tools write uncompressed tiles or use zlib's header. */
 static camber_status pack(taking *t, const camber_archive_tile *tile, camber_bytes *bytes) {
     const unsigned char *b = tile->bytes;
     const size_t size_bytes = (size_t)tile->size_bytes;
@@ -467,7 +468,7 @@ static camber_status take_entries(taking *t) {
     return status;
 }
 
-/* Checks the checksum of a shard. Only camber writes such checksums. */
+/* Compares the checksum that a shard states with the sum of its tiles. Only camber writes such checksums. */
 static camber_status check_part(taking *t) {
     const camber_archive *archive = t->archive;
     char text[17];
@@ -565,8 +566,8 @@ static camber_status sum_up(const camber_archive_plan *plan, char text[17]) {
     return added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-/* Adds the origin of the tiles to the metadata. A part keeps the zoom of its own centre, and that of the whole archive
- * is stored here. */
+/* Adds the origin of the tiles to the metadata. A part keeps the zoom of its own centre, so the zoom of the whole
+ * archive's centre is stored in this object. */
 static camber_status put_origin(camber_archive_plan *plan, const camber_archive_writer *writer) {
     const camber_archive_desc *desc = &writer->desc;
     char checksum[17];

@@ -5,11 +5,11 @@
 #include "archive/archive.h"
 #include "archive/contents.h"
 
-/* Tiles number, number + 1, ... with the same content. */
+/* A run: the tiles number, number + 1, ... have the same content. */
 typedef struct camber_archive_run {
     uint64_t number, length;
     uint32_t content; /* CAMBER_NO_CONTENT: removed */
-    uint32_t order;   /* the order in which runs arrived */
+    uint32_t order;   /* the position of this run in the order in which runs arrived */
 } camber_archive_run;
 
 typedef struct camber_archive_plan {
@@ -30,18 +30,17 @@ camber_status camber_archive_write_pmtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_mbtiles(const camber_archive_plan *plan);
 camber_status camber_archive_write_folder(const camber_archive_plan *plan);
 
-/* Compresses bytes with gzip and appends them. name is for messages. */
+/* Compresses bytes with gzip and appends the result to a buffer. name is for messages. */
 camber_status camber_archive_gzip(const char *name, const void *bytes, size_t size_bytes, camber_bytes *to);
 
 /* Adds bounds, centre, zooms and format to metadata as texts, in the form of MBTiles. */
 void camber_archive_put_texts(const camber_archive_plan *plan, json_t *metadata);
 
-/* Makes one ascending list of added and taken runs. If a tile was added twice, the last one stays; added tiles replace
- * taken ones. Two taken tiles with the same number and different bytes are a conflict. */
+/* A list of runs. */
 typedef struct camber_archive_runs {
     camber_archive_run *items;
     size_t count, capacity;
-    size_t removed; /* set: how many taken tiles were removed */
+    size_t removed; /* result: how many taken tiles were removed */
 } camber_archive_runs;
 
 typedef struct camber_archive_conflict {
@@ -50,6 +49,8 @@ typedef struct camber_archive_conflict {
     uint32_t orders[2];
 } camber_archive_conflict;
 
+/* Makes one ascending list of added and taken runs. If a tile was added several times, the last one stays. Added tiles
+ * replace taken ones. Two taken tiles with the same number but different bytes are a conflict. */
 camber_status camber_archive_resolve(camber_context *context, camber_archive_runs *added, camber_archive_runs *taken,
                                      camber_archive_runs *made, camber_archive_conflict *conflict);
 

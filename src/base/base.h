@@ -22,13 +22,13 @@ struct camber_budget {
     _Atomic uint64_t held_bytes, most_bytes;
 };
 
-/* Changes what a budget allows, which any thread may do. 0: the calls that run fail as soon as they need memory.
- * Inline, because the tool stops reading this way, and libcamber hides its own symbols. */
+/* Changes what a budget allows, which any thread may do. With 0, calls that are running fail as soon as they need
+ * memory. It is inline because the tool uses it to stop reading, and libcamber hides its internal symbols. */
 static inline void camber_budget_allow(camber_budget *budget, uint64_t most_bytes) {
     atomic_store(&budget->most_bytes, most_bytes);
 }
 
-/* The share of a budget that the current set of features has used. */
+/* The part of a budget that the current set of features has used. */
 typedef struct camber_spent {
     uint64_t tiles, steps, file_bytes, unfolded_bytes;
 } camber_spent;
@@ -38,8 +38,8 @@ struct camber_context {
     camber_budget *budget;
     camber_budget own_budget;
     camber_spent spent;
-    uint64_t next_serial;        /* the next number for polylines; meshes recognize the ones they have uploaded by it */
-    const void *gdal;            /* the calls of GDAL's reader, which formats/gdal.c has loaded. NULL: none yet */
+    uint64_t next_serial;        /* for the next polylines; meshes recognize polylines that they have uploaded by it */
+    const void *gdal;            /* GDAL's reading functions, which formats/gdal.c loads. NULL: not loaded yet */
     camber_device_info *devices; /* found by camber_device_list, which looks only once */
     size_t device_count;
     bool saves_shared; /* cache.c: files are saved to the folder that all users share */
@@ -55,8 +55,7 @@ void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes
 bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t needed, size_t size_bytes);
 void camber_free(camber_context *context, void *block);
 /* Allocates a block that is needed again in each frame: a freed block is kept for the next frame, if it is large and
- * there is no memory limit, because fresh pages cost more than filling them. The contents are whatever was left there.
- */
+ * there is no memory limit, because fresh pages cost more than filling them. The contents are undefined. */
 void *camber_alloc_spare(camber_context *context, size_t count, size_t size_bytes);
 void camber_free_spare(camber_context *context, void *block);
 /* Resizes a block without logging. block may be NULL. Returns NULL if there is no memory, and keeps the block as it
@@ -85,8 +84,8 @@ typedef enum camber_file_naming {
 /* ---- Budget ---- */
 
 void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc);
-/* Counts memory as used, also memory that the allocator does not manage. false: it exceeds the budget; report that with
- * camber_budget_fail. */
+/* Counts memory as used, including memory that the allocator does not manage. false: it exceeds the budget; report that
+ * with camber_budget_fail. */
 bool camber_budget_take(camber_context *context, uint64_t size_bytes);
 void camber_budget_give(camber_context *context, uint64_t size_bytes);
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes);
@@ -113,14 +112,14 @@ void camber_budget_read_again(camber_context *context);
  * whether the file exists or not. */
 bool camber_file_is_reached(const camber_context *context, const char *path);
 /* Opens a regular file for reading and returns its descriptor and size. Returns CAMBER_ERROR_NOT_FOUND,
- * CAMBER_ERROR_INPUT (a folder, a device or a pipe; a file outside the root), CAMBER_ERROR_ARGUMENT (the output),
+ * CAMBER_ERROR_INPUT (a folder, a device or a pipe; a file outside the root), CAMBER_ERROR_ARGUMENT (it is the output),
  * CAMBER_ERROR_IO. */
 camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
                                uint64_t *size_bytes);
 /* Makes the same checks for a file that another library will open by its path. */
 camber_status camber_file_check(camber_context *context, const char *path, camber_file_naming naming,
                                 uint64_t *size_bytes);
-/* Logs why a file cannot be read (cause is an errno), and returns the status for that. */
+/* Logs why a file cannot be read (cause is an errno), and returns the status for that cause. */
 camber_status camber_file_fail(camber_context *context, const char *path, int cause);
 /* Reads a whole file and appends a 0. Free *bytes with camber_free. Returns the errors of camber_file_open, and
  * CAMBER_ERROR_MEMORY. */
@@ -159,7 +158,7 @@ enum { CAMBER_FOLDER_SIZE = 1024 };
 bool camber_cache_is_on(const camber_context *context);
 /* Reads a file of the user's cache. Free *bytes with camber_free. false: a miss. */
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
-/* The same from the shared folder. */
+/* Reads a file of the shared folder in the same way. */
 bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* Whether there is a folder that files can be saved to. */
 bool camber_cache_can_save(const camber_context *context);

@@ -1,7 +1,7 @@
 /* Limits what a file can make a run use: memory, tiles, steps of databases, and bytes unpacked from archives. All
  * limits are here, so that a hostile file ends in an error and not in a dead machine. The allocator counts memory; the
- * caller sets the limit, or else it is three quarters of what the machine, the control group and ulimit leave free. The
- * other counts start again with each set of features. */
+ * caller sets the limit, or else it is three quarters of the memory that the machine, the control group and ulimit
+ * leave free. The other counts start again with each set of features. */
 #define _GNU_SOURCE /* RLIMIT_AS */
 
 #include "base/base.h"
@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
-/* An archive stores a tile that repeats only once: open water takes about 100 bytes per tile. */
+/* An archive stores a repeated tile only once, and a tile of open water takes about 100 bytes. */
 static const uint32_t UNFOLD = 32;
 static const uint64_t UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
-/* Below this the machine is not asked for its free memory; few runs ever need more. */
+/* While no more than this is in use, the machine is not asked for its free memory; few runs ever need more. */
 static const uint64_t UNASKED_BYTES = 64 << 20;
 
 void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc) {

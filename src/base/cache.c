@@ -66,7 +66,7 @@ bool camber_cache_is_on(const camber_context *context) {
     return users_folder(context, folder);
 }
 
-/* Makes the folder readable for all users, whatever the umask is. */
+/* Makes the folder readable by all users, whatever the umask is. */
 static bool make_shared(const char *folder) {
     return mkdir(folder, 0755) == 0 ? chmod(folder, 0755) == 0 : errno == EEXIST;
 }

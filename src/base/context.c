@@ -1,5 +1,5 @@
-/* The context: the caller's allocator, log and progress callbacks, and the budget. Every allocation of the library goes
- * through camber_resize_quietly, which counts its size in the budget. Logging turns a message into one line and hands
+/* The context: the caller's allocator, log and progress callbacks, and the budget. Every allocation of the library is
+ * made by camber_resize_quietly, which counts its size in the budget. Logging turns a message into one line and hands
  * it to the callback. */
 #include "base/base.h"
 
@@ -89,11 +89,12 @@ const char *camber_version(void) {
     return TEXT(CAMBER_VERSION_MAJOR) "." TEXT(CAMBER_VERSION_MINOR) "." TEXT(CAMBER_VERSION_PATCH);
 }
 
-/* Each block starts with its size, which the budget takes back when the block is freed. The head keeps the allocator's
- * alignment. */
+/* Each block starts with its size, which is given back to the budget when the block is freed. The head has 16 bytes so
+ * that the block keeps the allocator's alignment. */
 enum { HEAD_BYTES = 16 };
 
-/* Blocks that are kept for the next frame: smaller ones are cheap to make, and larger ones have 5 million points. */
+/* The sizes of blocks that are kept for the next frame: smaller blocks are cheap to make, and larger ones are for more
+ * than 5 million points. */
 static const size_t LEAST_SPARE_BYTES = 256 << 10, MOST_SPARE_BYTES = 64 << 20;
 
 static size_t size_of(const void *block) {

@@ -1,4 +1,4 @@
-/* Files that the build embeds in the library (src/embed.cmake). Each is followed by a 0. */
+/* Files that the build embeds in the library (src/embed.cmake). Each file is followed by a 0. */
 #ifndef CAMBER_BASE_EMBEDDED_H
 #define CAMBER_BASE_EMBEDDED_H
 
@@ -7,7 +7,7 @@ extern const char camber_tessellate_kernels[], camber_cull_kernels[], camber_arc
 extern const unsigned long camber_tessellate_kernels_size, camber_cull_kernels_size, camber_arc_length_kernels_size;
 extern const char camber_offset_kernels[], camber_raster_kernels[];
 extern const unsigned long camber_offset_kernels_size, camber_raster_kernels_size;
-/* shaders/ without their #version line, with what they include */
+/* The files of shaders/ without their #version lines, each with everything that it includes. */
 extern const char camber_stroke_vert[], camber_stroke_frag[];
 extern const unsigned long camber_stroke_vert_size, camber_stroke_frag_size;
 extern const char camber_flatten_vert[], camber_flatten_frag[];

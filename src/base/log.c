@@ -1,4 +1,4 @@
-/* Logging: a message becomes one line, and goes to the callback. */
+/* Logging: a message becomes one line, which is passed to the callback. */
 #include "base/base.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Opening files that a user or a style names. Inline, because the tool opens files too and libcamber hides its own. */
+/* Opening files that a user or a style names. The functions are inline because the tool opens files, too, and libcamber
+ * hides its internal symbols. */
 #ifndef CAMBER_BASE_OPEN_FILE_H
 #define CAMBER_BASE_OPEN_FILE_H
 
@@ -21,7 +22,7 @@ static inline int camber_open_file(const char *path, struct stat *about) {
     return -1;
 }
 
-/* Opens a file in a folder by its relative name, whose components have slashes between them. The folder's own path may
+/* Opens a file in a folder by its relative name, whose components are separated by slashes. The folder's own path may
  * contain links, but the name may not, so that whoever fills a folder that somebody else serves cannot make it lead to
  * other files. Otherwise it works like camber_open_file; errno is ELOOP for a link. */
 static inline int camber_open_file_below(const char *folder, const char *name, struct stat *about) {

@@ -1,8 +1,8 @@
 /* A camera that looks at the plane of the map at an angle, as MapLibre's does. It turns about the centre of the
- * picture, where one px of the plane is one px of the picture. Its field of view is the vertical one.
+ * picture, where one px of the plane is one px of the picture. Its field of view is measured vertically.
  *
  *     x, y   px of the plane, from the centre, y down          seen_x = x / depth
- *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth */
+ *     depth  1 - fall * y: 1 in the middle, more beyond it     seen_y = cosine * y / depth */
 #ifndef CAMBER_BASE_PERSPECTIVE_H
 #define CAMBER_BASE_PERSPECTIVE_H
 
@@ -22,10 +22,10 @@ static inline double camber_perspective_depth(const camber_perspective *p, doubl
     return p->cosine / (p->cosine + p->fall * seen_y);
 }
 
-/* Makes the perspective for a height of the picture and a pitch above 0. The far plane is MapLibre's: at 85 % of the
- * way from the centre to the horizon, or at the picture's top if that is nearer, and 1 % farther. */
+/* Makes the perspective for a picture's height and a pitch above 0. The far plane is MapLibre's: at 85 % of the way
+ * from the centre to the horizon, or at the picture's top if that is nearer, and 1 % farther. */
 static inline camber_perspective camber_perspective_of(double pitch_deg, double height_px) {
-    const double tan_half_view = 1.0 / 3.0; /* of 0.6435011087932844 rad */
+    const double tan_half_view = 1.0 / 3.0; /* the field of view is 0.6435011087932844 rad */
     const double angle = pitch_deg * (3.14159265358979323846 / 180.0), half = 0.5 * height_px;
     camber_perspective p = {.cosine = cos(angle), .fall = sin(angle) * tan_half_view / half};
     const double top = p.cosine - p.fall * half, horizon = 1.0 / (1.0 - 0.85);

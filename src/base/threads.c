@@ -14,7 +14,7 @@ static void *run_one(void *user) {
     return NULL;
 }
 
-/* Starts the threads of the numbers from first on, up to count. */
+/* Starts the threads with the numbers from first to count - 1. */
 static void start_from(camber_threads *threads, size_t first, size_t count, void (*work)(void *user, size_t number),
                        void *user) {
     threads->count = 0;

@@ -1,4 +1,4 @@
-/* Threads that do the same work side by side. Each is called with a number of its own, from 0 on. */
+/* Threads that do the same work in parallel. Each has its own number, counted from 0. */
 #ifndef CAMBER_BASE_THREADS_H
 #define CAMBER_BASE_THREADS_H
 
@@ -16,18 +16,19 @@ typedef struct camber_thread {
 
 typedef struct camber_threads {
     camber_thread threads[CAMBER_MOST_THREADS];
-    size_t count; /* that run */
+    size_t count; /* threads that run */
 } camber_threads;
 
-/* The number of threads to use: the one asked for; 0: one a core. It is at least 1 and at most CAMBER_MOST_THREADS. */
+/* Returns how many threads to use: as many as asked for, or one per core if asked is 0. The result is at least 1 and at
+ * most CAMBER_MOST_THREADS. */
 size_t camber_threads_count(size_t asked);
-/* Starts threads, which call work(user, number). If the system has no more, fewer than count run. They end when work
- * returns. */
+/* Starts count threads, each of which calls work(user, number) and ends when work returns. If the system cannot start
+ * that many, fewer run. */
 void camber_threads_start(camber_threads *threads, size_t count, void (*work)(void *user, size_t number), void *user);
-/* Waits until all have ended. */
+/* Waits until all threads have ended. */
 void camber_threads_join(camber_threads *threads);
-/* Calls work(user, number) for each number below count, on as many threads, and waits for all. Number 0 works on the
- * caller's thread; so do, after it, those for which the system has no thread. */
+/* Calls work(user, number) for each number below count, each on its own thread, and waits for all of them. The caller's
+ * thread does the work of number 0, and then the work of the numbers for which the system could not start a thread. */
 void camber_threads_run(size_t count, void (*work)(void *user, size_t number), void *user);
 
 #endif

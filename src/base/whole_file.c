@@ -1,7 +1,8 @@
-/* Writes files that appear whole or not at all. A file is written beside its path, under a name that nobody has, and is
- * renamed when it is complete; so readers see the old file or the new one, and a run that is killed harms neither.
+/* Writes files that appear whole or not at all. A file is written beside its path, under a name that no other file has,
+ * and is renamed when it is complete; so readers see the old file or the new one, and a run that is killed harms
+ * neither.
  *
- * Input: a path and bytes. Output: the file, or an errno: who calls says which file it is and what to do. */
+ * Input: a path and bytes. Output: the file, or an errno; the caller reports which file failed and what to do. */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
 

@@ -75,7 +75,7 @@ typedef struct camber_comparison {
 int camber_comparison_run(camber_comparison *comparison, camber_session *session);
 void camber_comparison_close(camber_comparison *comparison);
 
-/* A method's metric divided by that of kite, the paper's method. NAN if kite has none. */
+/* A method's metric divided by the same metric of kite, the paper's method. NAN if kite has none. */
 double camber_comparison_ratio(const camber_comparison *comparison, int method, int metric);
 
 #endif

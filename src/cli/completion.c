@@ -2,8 +2,8 @@
  * accepts.
  *
  * The script for bash consists of three tables and a function. The tables are shell functions: the options of a verb,
- * the values of an option, and the operands of a verb. The function determines what is at the cursor, and looks it up.
- * In the tables, the words @files and @folders stand for paths.
+ * the values of an option, and the operands of a verb. The function determines what kind of word is at the cursor, and
+ * looks up the candidates in the tables. In the tables, the words @files and @folders stand for paths.
  *
  * The script for zsh has one call of _arguments for each verb; zsh does the rest. */
 #include "cli/completion.h"

@@ -1,4 +1,4 @@
-# Completion scripts for bash and zsh, printed by the tool that has been built and installed where the shells find them.
+# Completion scripts for bash and zsh. The built tool prints them, and they are installed where the shells find them.
 if(NOT CAMBER_SANITIZE AND NOT CAMBER_FUZZ AND NOT CMAKE_CROSSCOMPILING)
   set(scripts)
   foreach(shell bash zsh)

@@ -11,13 +11,13 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* PoCL 3.1 aborts if it compiles with fewer than 13. */
+/* PoCL 3.1 aborts if it compiles with fewer than 13 file descriptors. */
 enum { LEAST_DESCRIPTORS = 16 };
 
-/* PoCL's names for the number of threads: since 4.0, and before. */
+/* PoCL reads the number of threads from the first variable since version 4.0, and from the second before. */
 static const char *const POCL_THREADS[] = {"POCL_CPU_MAX_CU_COUNT", "POCL_MAX_PTHREAD_COUNT"};
 
-/* Also sets the threads of llvmpipe, which reads the variable when it starts, and of GDAL. */
+/* Sets the number of threads for PoCL, for llvmpipe, which reads its variable when it starts, and for GDAL. */
 static bool set_threads(uint32_t threads) {
     char text[16];
     snprintf(text, sizeof text, "%u", threads);
@@ -47,7 +47,7 @@ static bool may_pin(void) {
 #endif
 }
 
-/* A relative folder counts as none, as the XDG rules say. PoCL and Mesa would make it in the working folder. */
+/* A relative folder is ignored, as the XDG rules say. PoCL and Mesa would create it in the working folder. */
 static bool forget_relative(const char *name) {
     const char *folder = getenv(name);
     return !folder || folder[0] == '/' || unsetenv(name) == 0;
@@ -61,7 +61,7 @@ const char *camber_environment_temporary(void) {
 bool camber_environment_set(const camber_options *options) {
     bool set = !options->threads || set_threads(options->threads);
     set = forget_relative("XDG_CACHE_HOME") && forget_relative("HOME") && set;
-    /* Without it GDAL puts temporary files into the working folder. */
+    /* Without this variable, GDAL puts temporary files into the working folder. */
     set = setenv("CPL_TMPDIR", camber_environment_temporary(), 0) == 0 && set;
     /* Otherwise Mesa prints warnings about missing GPUs among the errors. */
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
@@ -70,12 +70,13 @@ bool camber_environment_set(const camber_options *options) {
     /* For a PoCL whose binaries the library does not know (src/gpu/opencl/pocl.c): each kernel is built once for all
      * sizes of work-groups, so that the cache can keep it. */
     set = setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0) == 0 && set;
-    /* PoCL sets this variable while it looks for devices. Adding a variable moves the environment under a getenv on
-     * GDAL's thread; changing one that exists does not. */
+    /* PoCL sets this variable while it looks for devices. Adding a variable can move the environment while GDAL's
+     * thread is in a getenv; changing one that exists does not. */
     return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
 }
 
-/* Called before a driver starts, because a driver that cannot open its files reports no device, or nothing at all. */
+/* Called before a driver starts, because a driver that cannot open its files says that there is no device, or says
+ * nothing. */
 bool camber_environment_has_descriptors(void) {
     int copies[LEAST_DESCRIPTORS], count = 0;
     while (count < LEAST_DESCRIPTORS && (copies[count] = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0)

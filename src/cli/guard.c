@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 /* Signals that end a process by default and that another process, a terminal, a timer or a limit sends. SIGPIPE and
- * SIGXFSZ are left out: they appear as failed writes. Nobody can wait for SIGKILL. */
+ * SIGXFSZ are left out: they appear as failed writes. A process cannot wait for SIGKILL. */
 static const int from_outside[] = {
     SIGHUP,  SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF,
 #ifdef SIGPOLL

@@ -10,9 +10,9 @@
 #define CAMBER_GUARD_FILES 8
 
 /* Signals that come from outside to end the process (SIGHUP, SIGINT, SIGTERM and their like) are blocked in every
- * thread, and one thread waits for them: it removes the files and ends the process with 128 + the signal's number. So
- * a signal also ends a long call of a library. Faults within the process (SIGSEGV, a driver's abort and their like)
- * meet a handler in the thread that they stop: it removes the files and lets the fault end the process. */
+ * thread, and one thread waits for them: it removes the files and ends the process with 128 + the signal's number. So a
+ * signal also ends a long call of a library. Faults within the process (SIGSEGV, a driver's abort and their like) call
+ * a handler in the thread that they stop: it removes the files and lets the fault end the process. */
 typedef void camber_guard_handler(int number);
 
 typedef struct camber_guard {
@@ -23,13 +23,13 @@ typedef struct camber_guard {
     bool stopping;
     void (*look)(void *user); /* called by the thread periodically, with the guard locked; may be NULL */
     void *look_user;
-    /* Handles a signal from outside, with the guard locked. Returns true if it did; otherwise the process ends. NULL:
-     * the process ends. */
+    /* Handles a signal from outside, with the guard locked. Returns true if it has handled it; otherwise the process
+     * ends. NULL: the process ends. */
     bool (*heed)(void *user, int number);
     void *heed_user;
     _Atomic(camber_guard_handler *)
         after_abort;                           /* a library's handler of aborts, called after the guard's. NULL: none */
-    bool erase_bar;                            /* a progress bar may stand on standard error */
+    bool erase_bar;                            /* standard error may show a progress bar */
     _Atomic(char *) paths[CAMBER_GUARD_FILES]; /* NULL: free */
 } camber_guard;
 
@@ -43,7 +43,7 @@ void camber_guard_stop(camber_guard *guard);
  * when a driver has certainly been opened. Any thread may call it. */
 void camber_guard_go_first(camber_guard *guard);
 
-/* Between these two, no signal from outside ends the process. */
+/* Between calls of these two functions, no signal from outside ends the process. */
 void camber_guard_lock(camber_guard *guard);
 void camber_guard_unlock(camber_guard *guard);
 

@@ -280,7 +280,7 @@ static int read_fonts(const camber_input *input) {
                                 camber_features_read_fonts(input->features, &desc, input->base_path));
 }
 
-/* With --verbose: says where the time of reading went. */
+/* With --verbose: says how long the steps of reading took. */
 static void say_times(const camber_input *input) {
     const camber_features_times times = camber_features_get_times(input->features);
     if (input->session->report->verbose)
@@ -361,7 +361,7 @@ static camber_status project_once(camber_input *input, const camber_scene_desc *
     return status;
 }
 
-/* With --verbose: says what the scene has in memory for its view and others. */
+/* With --verbose: says how many points the scene keeps in memory for its own view and others. */
 static void say_network(const camber_input *input) {
     camber_camera camera;
     camber_tessellation_desc desc;

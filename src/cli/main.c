@@ -23,7 +23,7 @@ static int run(camber_session *session) {
     case CAMBER_VERB_TESSELLATE:
     case CAMBER_VERB_STYLE:
     case CAMBER_VERB_TILES:
-    case CAMBER_VERB_SERVE: break; /* this build does not parse these verbs */
+    case CAMBER_VERB_SERVE: break; /* this build's parser does not accept these verbs */
 #endif
     case CAMBER_VERB_COMPARE: return camber_verb_compare(session);
     case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);

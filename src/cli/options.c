@@ -1,5 +1,5 @@
-/* Turns argv into camber_options: each argument with the table of options, then all of them together (options_check.c).
- * --help is printed from the same table. */
+/* Turns argv into camber_options: parses each argument with the table of options, and then checks all options together
+ * (options_check.c). --help is printed from the same table. */
 #include "cli/options_table.h"
 
 #include <jansson.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* A tenth of a pixel is not visible, and drops a fifth to a third of a city's points. */
+/* Moving lines by a tenth of a pixel is not visible, and drops a fifth to a third of a city's points. */
 #define DRAWN_SIMPLIFY_PX 0.1
 
 enum { NAME_LETTERS = 32 }; /* longest option name that a mistyped one is compared with */
@@ -210,7 +210,7 @@ static int parse_words(const camber_option_reader *p, const camber_option_spec *
 }
 
 static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
-    /* With two outputs, only one would be written. */
+    /* If two outputs were given, only one would be written. */
     if (spec->offset == offsetof(camber_options, output) && p->options->output)
         return camber_options_refuse(p, "-o %s: is the second output, after -o %s; give one of them", text,
                                      p->options->output);

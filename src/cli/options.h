@@ -119,7 +119,7 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
 int camber_options_check_tiles(camber_options *options, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 
-/* Prints the help of the tool (CAMBER_VERB_NONE) or of a verb. */
+/* Prints the help for the tool (CAMBER_VERB_NONE) or for a verb. */
 void camber_options_help(camber_verb verb, FILE *file);
 
 #endif

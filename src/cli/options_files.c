@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* An existing file is identified by its device and inode, and a file that does not exist by those of its folder, and
- * its name. */
+/* An existing file is identified by its device and inode, and a file that does not exist by its folder's device and
+ * inode and its own name. */
 typedef struct file {
     const char *path, *role;
     dev_t device;
@@ -30,7 +30,7 @@ static bool take_info(file *it, const struct stat *info) {
     return true;
 }
 
-/* Only regular files count: a device or a pipe may well be read and written. */
+/* Only regular files count: a device or a pipe may be both read and written. */
 static bool find_stream(file *it, int descriptor, const char *name) {
     struct stat info;
     it->path = name;

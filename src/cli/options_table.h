@@ -17,12 +17,12 @@ typedef enum camber_option_kind {
     CAMBER_OPTION_TEXT,   /* const char * */
     CAMBER_OPTION_FILE,   /* const char *, a path */
     CAMBER_OPTION_FOLDER, /* const char *, a path */
-    CAMBER_OPTION_FONTS,  /* camber_options.fonts: folders, several times */
+    CAMBER_OPTION_FONTS,  /* camber_options.fonts: a folder; the option may be given several times */
     CAMBER_OPTION_STYLE,  /* const char *, the name of a built-in style, or a path */
     CAMBER_OPTION_DEVICE, /* const char *, cpu, gpu, or part of a name */
     CAMBER_OPTION_WORDS,  /* const char *, UTF-8; may be empty */
     CAMBER_OPTION_WHERES, /* camber_options.wheres: the option may be given several times */
-    CAMBER_OPTION_PLACES, /* camber_options.places: z/x/y, several times */
+    CAMBER_OPTION_PLACES, /* camber_options.places: z/x/y; the option may be given several times */
     CAMBER_OPTION_NUMBER, /* double, least to most */
     CAMBER_OPTION_COUNT,  /* uint32_t, least to most */
     CAMBER_OPTION_BYTES,  /* uint64_t, least to most: a number of bytes, or a number followed by K, M or G */

@@ -10,7 +10,7 @@ typedef struct writer {
     camber_context *context;
     camber_output *output;
     uint32_t width, height;
-    /* One of these: */
+    /* png or encoder is used, the other is NULL */
     camber_png *png;
     camber_encoder *encoder;
     uint8_t *rgba; /* the rows for the encoder */

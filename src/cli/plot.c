@@ -76,7 +76,8 @@ static void send(int descriptor, const char *text) {
 }
 
 /* Sends the script to the child and waits for its end. The script fits into the pipe, so neither waits for the other.
- * line receives the first line of its errors. Returns its exit status; -1 if a signal ended it. */
+ * line receives the first line that the child prints on standard error. Returns the child's exit status; -1 if a signal
+ * ended it. */
 static int finish(const child *made, const char *script, char *line, size_t line_size) {
     send(made->input, script);
     close(made->input);
@@ -177,7 +178,7 @@ static void put_script(const camber_comparison *c, bool svg, FILE *script) {
         fputs("set terminal svg size 1120,360 dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
               "background rgb 'white'\n",
               script);
-    else /* without Cairo gnuplot has another terminal for PNG */
+    else /* without Cairo, gnuplot uses another terminal for PNG */
         fputs("if (strstrt(GPVAL_TERMINALS, 'pngcairo')) {\n"
               "set terminal pngcairo size 2240,720 noenhanced font 'sans,14' fontscale 1.7 background rgb 'white'\n"
               "} else {\nset terminal png size 2240,720 noenhanced font 'sans,24' background rgb 'white'\n}\n",

@@ -40,8 +40,8 @@ void camber_report_erase_bar(camber_report *report) {
     report->bar_ms = 0;
 }
 
-/* Prints a line that stays visible: what takes so long, and that it happens only once. Another thread's progress bar
- * may be visible. */
+/* Prints a line that stays visible and says what takes so long, and that this happens only once. Another thread's
+ * progress bar may be visible. */
 static void say_compiles(camber_report *report, const char *stage) {
     if (!report->terminal || report->said_compiles)
         return;

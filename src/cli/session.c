@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Meshes of tiles are small, except at zooms that show much of the data. There their parts are swapped in and out,
- * which is just as fast. */
+/* Meshes of tiles are small, except at zooms that show much of the data. At those zooms, parts of a mesh are swapped in
+ * and out, which is just as fast. */
 static const uint64_t TILES_BYTES = 256 << 20;
 /* Any input can be read within this limit. */
 static const uint64_t LEAST_BUDGET_BYTES = 128 << 20;
@@ -148,7 +148,7 @@ struct camber_opener {
     camber_session *session;
     camber_context *context;
     camber_report report;
-    camber_report *told; /* report while the thread runs, afterwards the session's */
+    camber_report *told; /* `report` while the thread runs, and the session's report afterwards */
     camber_status status;
     camber_outlook outlook;
     double pitch_deg;

@@ -54,20 +54,20 @@ typedef struct camber_session {
 /* Starts opening a renderer on a second thread, and prepares what a picture with this outlook and pitch needs.
  * camber_session_need(CAMBER_NEEDS_RENDERER) waits for it and reports failures. */
 void camber_session_start(camber_session *session, camber_outlook outlook, double pitch_deg);
-/* Whether that has been started, and camber_session_need has not waited for it yet. */
+/* Whether camber_session_start has been called, and camber_session_need has not waited for the renderer yet. */
 bool camber_session_is_opening(const camber_session *session);
 
 /* Opens what is needed and not open yet. Returns an exit status; on failure a line has been printed. */
 int camber_session_need(camber_session *session, camber_needs needs);
-/* The same, if a missing device or GL is not an error. The session must have a context, and no renderer may be
- * opening. */
+/* Does the same for callers for whom a missing device or GL is not an error. The session must have a context, and no
+ * renderer may be opening. */
 camber_status camber_session_open(camber_session *session, camber_needs needs);
 void camber_session_close(camber_session *session);
 
 /* Returns the method that the options select, or the default. */
 camber_method camber_session_method(const camber_session *session);
 
-/* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing" of what is open. */
+/* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing", as far as these parts are open. */
 void camber_session_describe(const camber_session *session, json_t *object);
 
 #endif

@@ -134,7 +134,7 @@ static int name_width(const camber_comparison *c) {
     return width < NAME_COLUMNS ? (int)width : NAME_COLUMNS;
 }
 
-/* Returns row i: a network, or after the networks their average, if there are several. */
+/* Returns row i: a network, or, after the last of several networks, their average. */
 static const camber_comparison_row *row_at(const camber_comparison *c, size_t i) {
     return i < c->networks.count ? &c->rows[i] : &c->average;
 }

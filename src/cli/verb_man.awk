@@ -1,5 +1,5 @@
-# The man page of a verb, made of what camber.1 says of it: awk -v verb=tiles -v section=Tiles -f verb_man.awk camber.1
-# Its lines of the synopsis, its entries among the verbs, and the options that only it has.
+# Makes the man page of a verb from its parts in camber.1: its lines in the synopsis, its entries among the verbs, and
+# the options that only it has. Usage: awk -v verb=tiles -v section=Tiles -f verb_man.awk camber.1
 
 BEGIN {
     name["tiles"] = "draw pyramids of map tiles into archives"

@@ -17,7 +17,7 @@ typedef struct job {
 } job;
 
 /* The time that belongs to no stage: loading libraries, and opening the device and its kernels while files are read, as
- * far as it takes longer than reading. Together with the stages it is the whole. */
+ * far as it takes longer than reading. Together with the times of the stages it adds up to the total. */
 static double start_ms(const job *j) {
     const camber_frame_stats *frame = &j->times.frame;
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - frame->draw_ms - frame->read_ms -

@@ -33,7 +33,7 @@ int camber_verb_serve(camber_session *session) {
 #include <string.h>
 #include <sys/stat.h>
 
-/* If the device fails to draw LOST_PICTURES pictures in a row, it counts as lost. */
+/* If the device fails to draw LOST_PICTURES pictures in a row, it is considered lost. */
 enum { DEEPEST_ZOOM = 22, LOOK_MS = 200, BEAT_MS = 10000, LOST_PICTURES = 3 };
 /* A reading that is given up ends when it next needs memory. If its library never does, the thread is abandoned. */
 enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
@@ -41,7 +41,7 @@ enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
 typedef struct reading reading;
 typedef struct rereading rereading;
 
-/* Requests of signals, and of changes to the style that is edited. */
+/* Requests that arrive as signals or as changes to the style that is edited. */
 typedef struct wishes {
     pthread_mutex_t mutex;
     pthread_cond_t changed;
@@ -71,7 +71,7 @@ struct reading {
     wishes *wishes;
 };
 
-/* A reading on its own thread. The mutex of the wishes guards what both threads use. */
+/* A reading on its own thread. The mutex of the wishes guards the members that both threads use. */
 struct rereading {
     reading *it;
     pthread_t thread;
@@ -297,7 +297,7 @@ static int read_input(reading *it) {
 
 /* ---- Reading again ---- */
 
-/* glibc keeps small freed blocks in the process otherwise, where they count as its memory. */
+/* Returns freed memory to the system. Otherwise glibc keeps small freed blocks, which count as the process's memory. */
 static void give_memory_back(void) {
 #ifdef __GLIBC__
     malloc_trim(0);
@@ -313,7 +313,7 @@ static void give_up(void *user) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-/* Shares the verb's memory with the content that is served meanwhile. */
+/* Prepares another reading. It shares the verb's memory with the content that is served meanwhile. */
 static void begin_again(reading *it, const camber_session *verb) {
     const reading *current = it->wishes->current;
     it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose, .keeps = true};

@@ -20,13 +20,13 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* The time that belongs to no stage: libraries, the device and its kernels. Together with the stages it is the whole.
- */
+/* The time that belongs to no stage: loading libraries, and opening the device and its kernels. Together with the times
+ * of the stages it adds up to the total. */
 static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }
 
-/* A row gets the paint of the topmost pass that draws it: the fill's if there is a casing. */
+/* A row gets the paint of the topmost pass that draws it. If there is a casing, this is the fill's paint. */
 static bool gather_paints(job *j, size_t count) {
     j->paints = calloc(count ? count : 1, sizeof *j->paints);
     if (!j->paints)

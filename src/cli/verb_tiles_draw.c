@@ -373,7 +373,8 @@ static int print_json(const job *j) {
     return camber_report_json(j->session->report, object);
 }
 
-/* Warns if there are no tiles. One shard of several may well have none. */
+/* Warns if there are no tiles. If there are several shards, one of them may have no tiles, which is not worth a
+ * warning. */
 static void warn_empty(const job *j) {
     const camber_options *options = j->session->options;
     if (j->stats.done || j->stats.units || j->shard.count || options->renewed)

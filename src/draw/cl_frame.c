@@ -1,5 +1,5 @@
 /* Draws frames in OpenCL: the list becomes a scene, which the rasterizer draws one area (a rectangle of the picture)
- * after another; their pixels are handed over as rows. */
+ * after another. The caller gets the pixels of the areas as rows. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
@@ -28,15 +28,15 @@ static camber_raster_area first_area(const camber_renderer *renderer, const camb
 typedef struct destination {
     camber_rows_fn *rows;
     void *user;
-    camber_area_fn *draw; /* called instead of drawing. NULL: the rasterizer draws */
+    camber_area_fn *draw; /* called for each area instead of drawing it. NULL: the rasterizer draws */
     /* the picture, if kernels write into it in place. NULL: they write into a buffer of the rasterizer */
     uint8_t *place;
-    uint8_t *rgba; /* rows of the picture, assembled from several areas. NULL: an area's own rows are handed over */
+    uint8_t *rgba; /* rows of the picture, assembled from several areas. NULL: the caller gets an area's own rows */
     uint32_t width;
     double user_ms; /* time that the caller's callback took, which does not count as reading back */
 } destination;
 
-/* Copies the area into rows of the picture, or hands it over as it is. */
+/* Copies the area into rows of the picture, or passes its rows to the caller. */
 static camber_status take_area(camber_renderer *renderer, const camber_raster_area *area, destination *to) {
     camber_raster_pixels pixels;
     const size_t width_bytes = 4 * (size_t)area->width, row_bytes = 4 * (size_t)to->width;
@@ -149,7 +149,7 @@ camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *fr
     return render_to(renderer, frame, &to, stats);
 }
 
-/* Whether kernels can write a picture in place: in whole tiles, without gaps, in memory that they reach. */
+/* Whether kernels can write a picture in place: it has whole tiles and no gaps, and kernels can reach its memory. */
 static bool can_be_in_place(const camber_renderer *renderer, const camber_frame *frame,
                             const camber_pixel_target *place) {
     return renderer->share.device->host_memory && first_area(renderer, frame).width == frame->width &&

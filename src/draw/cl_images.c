@@ -1,5 +1,5 @@
-/* Puts the images of a frame that OpenCL draws into the side table: their texels, once for each size, and for each
- * brush with an image the words that kernels/images.h lists. */
+/* Stores the images of a frame that OpenCL draws in the side table: their texels, once for each size, and the words
+ * that kernels/images.h lists, for each brush with an image. */
 #include "draw/draw_cl.h"
 
 #include "kernels/images.h"
@@ -21,7 +21,7 @@ static bool are_opaque(const uint8_t *texels, size_t count) {
     return true;
 }
 
-/* Adds texels to the side table: *words points to them, *first is the number of the first one. */
+/* Adds texels to the side table. *words points to them, and *first is the number of the first texel. */
 static camber_status add_texels(camber_side_table *table, size_t count, size_t *first, float **words) {
     if (table->count + count > CAMBER_SIDE_TABLE_MAX) {
         camber_fail(table->context, CAMBER_ERROR_LIMIT,
@@ -71,7 +71,7 @@ static void put_texels(float words[CAMBER_IMAGE_WORDS], const camber_cl_image *h
     words[3] = (float)width_px;
 }
 
-/* Adds the words of an image, unless they equal those added last. */
+/* Adds the words of an image, unless they equal the words that were added last. */
 static camber_status add_words(camber_cl_images *images, const float words[CAMBER_IMAGE_WORDS], uint32_t *first) {
     const size_t size_bytes = CAMBER_IMAGE_WORDS * sizeof *words;
     float *made = NULL;

@@ -1,13 +1,13 @@
 /* Makes the rasterizer's scene from a draw list. A command becomes an input (polylines of a mesh), and a table with a
  * row for each of its mesh's rows. A row refers to a brush: its colour, its layer and group, and, in a second table,
- * its features. Polygons take the next brush wherever their fill changes.
+ * its features. Polygons use the next brush from each change of their fill on.
  *
  * Fills below all lines become part of the background, and an opaque fill hides all inputs below it. */
 #include "draw/draw_cl.h"
 
 #include <string.h>
 
-/* How far back to look for a brush of the same colour. */
+/* How many of the latest brushes are compared with a new one. */
 enum { BRUSHES_BACK = 16 };
 
 void camber_cl_tables_free(camber_cl_tables *t) {
@@ -20,8 +20,8 @@ void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->rows);
 }
 
-/* Returns the number of a brush: that of an equal one from brush first on, or of a new one. The fill below it is the
- * last one so far. */
+/* Finds the number of a brush: of an equal brush from number `first` on, or of a new brush. The fill below it is the
+ * last fill so far. */
 static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *wanted,
                                const camber_brush_ext *brush_ext, uint32_t *number) {
     camber_brush brush = *wanted;
@@ -71,8 +71,8 @@ static camber_status set_features(camber_cl_tables *t, const camber_draw_list *l
                : CAMBER_OK;
 }
 
-/* Fills in the parts of a brush that all brushes of a command share. The union needs no layer: its brush has the
- * opacity. */
+/* Returns a brush with the fields that all brushes of a command share. A union needs no layer, because its brush has
+ * the opacity. */
 static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_command *command) {
     camber_brush brush = {.mode = CAMBER_BRUSH_OVER, .group = command->group};
     if (command->group)
@@ -88,7 +88,8 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
     return brush;
 }
 
-/* Returns the position of the words of a fill's image in the side table, which has each once. It is never 0. */
+/* Finds the position of the words of a fill's image in the side table, which has each image's words once. The position
+ * is never 0. */
 static camber_status use_fill_image(camber_cl_tables *t, const camber_draw_list *list, int32_t fill, uint32_t *words) {
     bool is_opaque;
     camber_status status = CAMBER_OK;
@@ -102,7 +103,8 @@ static camber_status use_fill_image(camber_cl_tables *t, const camber_draw_list 
     return status;
 }
 
-/* Adds the brush of a span of areas. No other span has it, so that its polygons are united only with each other. */
+/* Adds the brush of a span of areas. No other span uses this brush, so the polygons of the span are united only with
+ * each other. */
 static camber_status add_area_brush(camber_cl_tables *t, const camber_draw_list *list,
                                     const camber_draw_command *command, int32_t fill, uint32_t *number) {
     const camber_fill_paint *paint = list->fills + fill;
@@ -121,7 +123,7 @@ static camber_status add_area_brush(camber_cl_tables *t, const camber_draw_list 
     return status == CAMBER_OK ? use_brush(t, t->brush_count, &brush, &brush_ext, number) : status;
 }
 
-/* Adds the consecutive brushes of a command of polygons, and the positions at which one takes over from another. */
+/* Adds the consecutive brushes of a command of polygons, and the polylines at which the brush changes. */
 static camber_status add_area_brushes(camber_cl_tables *t, const camber_draw_list *list,
                                       const camber_draw_command *command, uint32_t *first) {
     const camber_area_span *spans = list->spans + command->first_span;
@@ -157,7 +159,7 @@ static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *
     return status;
 }
 
-/* Adds the table of a command. Its brushes are looked for from first_brush on. */
+/* Adds the table of a command. Only brushes from first_brush on are reused for it. */
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
     const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
@@ -208,7 +210,7 @@ static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list
 
 /* ---- Fills ---- */
 
-/* Removes everything below, which an opaque fill hides. */
+/* Removes everything below an opaque fill, which hides it. */
 static void drop_hidden_inputs(camber_cl_tables *t) {
     t->input_count = 0;
     t->fill = 0;
@@ -249,7 +251,7 @@ static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *l
     const camber_brush_ext no_more = {0};
     uint32_t number;
     camber_status status =
-        use_brush(t, 0, &no_brush, &no_more, &number); /* there has to be one, with which a tile begins */
+        use_brush(t, 0, &no_brush, &no_more, &number); /* there has to be a brush with which a tile begins */
     for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
         const camber_draw_command *command = list->commands + i;
         status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);

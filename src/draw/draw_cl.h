@@ -1,4 +1,4 @@
-/* Draws a list in OpenCL: it becomes a scene of the rasterizer, which draws it one area (a rectangle of the picture)
+/* Draws a list in OpenCL: the list becomes a scene, which the rasterizer draws one area (a rectangle of the picture)
  * after another.
  *
  *     cl_frame.c   areas of a frame, and their pixels
@@ -14,7 +14,7 @@
 /* ---- cl_frame.c ---- */
 
 struct camber_pixel_target;
-/* Draws a frame, whose list is in the renderer, and hands over its rows. */
+/* Draws a frame, whose list is in the renderer, and passes its rows to the caller. */
 camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
 camber_status camber_cl_render_into(camber_renderer *renderer, const camber_frame *frame,
@@ -29,9 +29,9 @@ camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame 
 
 /* An image in the side table. */
 typedef struct camber_cl_image {
-    camber_image image; /* of the caller */
+    camber_image image; /* the caller's image */
     camber_image_size size;
-    size_t first; /* texel of the side table; each holds four of the image's */
+    size_t first; /* texel of the side table, which holds four texels of the image */
     bool is_opaque;
 } camber_cl_image;
 
@@ -43,8 +43,8 @@ typedef struct camber_cl_images {
     double nearest;    /* the most px of the picture that one px of the plane takes */
 } camber_cl_images;
 
-/* These add the image of a line, or of a fill, to the side table. *words is the texel there that a brush refers to.
- * They return CAMBER_ERROR_LIMIT (the table is full), CAMBER_ERROR_MEMORY. */
+/* These add the image of a line, or of a fill, to the side table. *words is the texel of the side table that a brush
+ * refers to. They return CAMBER_ERROR_LIMIT (the table is full), CAMBER_ERROR_MEMORY. */
 camber_status camber_cl_images_add_line(camber_cl_images *images, const camber_image_use *use, uint32_t *words);
 camber_status camber_cl_images_add_fill(camber_cl_images *images, const camber_draw_list *list,
                                         const camber_fill_paint *fill, uint32_t *words, bool *is_opaque);
@@ -57,16 +57,16 @@ typedef struct camber_cl_tables {
     camber_context *context;
     float *rows;
     camber_brush *brushes;
-    camber_brush_ext *brush_ext; /* as many as brushes */
+    camber_brush_ext *brush_ext; /* one for each brush */
     camber_raster_input *inputs;
     size_t *changes; /* polylines at which the brush of polygons changes */
     size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity,
         change_count, change_capacity;
-    uint32_t *fill_images; /* position of each fill's image in the side table. 0: not there. NULL: there are none */
-    uint32_t fill;         /* brush of the last fill so far that is no part of the background. 0: none */
+    uint32_t *fill_images; /* position of each fill's image in the side table. 0: not added yet. NULL: no fills */
+    uint32_t fill;         /* brush of the last fill so far that is not part of the background. 0: none */
     bool is_rich;          /* a brush has features */
     camber_cl_images images;
-    uint32_t layers;     /* so far */
+    uint32_t layers;     /* layers that the scene has so far */
     float background[4]; /* premultiplied: the colour below the first input */
     float sky[4];        /* premultiplied: the colour above the horizon, where only colours are drawn */
 } camber_cl_tables;

@@ -1,6 +1,6 @@
 /* Draws a list in GL: draw calls for polylines, layers and groups that are flattened, fills, and counts of overdraw.
  *
- *     gl_frame.c     areas (rectangles) of a frame, one after another, waited for and read back
+ *     gl_frame.c     draws areas (rectangles) of a frame, one after another, waits for them and reads them back
  *     gl_commands.c  the list's commands in one area
  *     gl_areas.c     polygons, which kernels fill
  *     gl_batch.c     polylines, in as few draw calls as the driver allows
@@ -50,7 +50,7 @@ typedef struct camber_batch_range {
 } camber_batch_range;
 
 typedef struct camber_batch {
-    camber_mesh *mesh; /* of all ranges */
+    camber_mesh *mesh; /* mesh of all ranges */
     size_t table_count;
     unsigned features; /* CAMBER_FEATURE_* of its commands */
     camber_batch_range *ranges;
@@ -64,7 +64,7 @@ typedef struct camber_batch {
 typedef struct camber_atlas_image {
     uint64_t hash; /* hash of its pixels */
     camber_image_size size;
-    GLint x, y; /* of its first texel */
+    GLint x, y; /* position of its first texel in the atlas */
 } camber_atlas_image;
 
 /* Images side by side in one texture, on shelves. */
@@ -73,7 +73,7 @@ typedef struct camber_atlas {
     GLsizei height;
     camber_atlas_image *images;
     size_t count, capacity;
-    GLint shelf_x, shelf_y, shelf_height; /* where the next image goes */
+    GLint shelf_x, shelf_y, shelf_height; /* where the next image is put */
     uint64_t *hashes;                     /* hashes of the frame's images, by their number. 0: not known yet */
     size_t hash_count, hash_capacity;
 } camber_atlas;
@@ -90,7 +90,7 @@ typedef struct camber_gl_drawing {
 
 /* An area of the picture that is drawn at once. */
 typedef struct camber_gl_area {
-    uint32_t x, y, width, height; /* in the picture, px */
+    uint32_t x, y, width, height; /* position and size in the picture, px */
     int target;                   /* target that commands are drawn into */
     camber_coverage coverage;
     float thinnest_px; /* width of the thinnest line of the frame */
@@ -100,12 +100,12 @@ typedef struct camber_gl_area {
 
 /* ---- gl_frame.c ---- */
 
-/* Frees everything that GL draws with. is_current: the GL context is current; else its objects are freed with the
+/* Frees everything that GL draws with. is_current: the GL context is current; else GL's objects are freed with the
  * context. */
 void camber_gl_release(camber_renderer *renderer, bool is_current);
 /* Logs the errors that GL reports; CAMBER_OK if there are none. */
 camber_status camber_gl_check(camber_renderer *renderer, const char *what);
-/* Draws a frame, whose list the renderer has, and hands over its rows, which may be NULL. */
+/* Draws a frame, whose list is in the renderer, and passes its rows to `rows`, which may be NULL. */
 camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                                camber_frame_stats *stats);
 /* Draws a whole frame, whose list is in the renderer, as one area into a target. */
@@ -124,15 +124,15 @@ camber_status camber_gl_fill_layer(camber_renderer *renderer, const camber_draw_
 
 /* ---- gl_batch.c ---- */
 
-/* Queues the polylines of a command. If they cannot share a draw call with those already queued, draws the latter
- * first. */
+/* Queues the polylines of a command. If they cannot share a draw call with the polylines that are already queued, draws
+ * those first. */
 camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area);
-/* Puts all images of a command into the atlas. If others have to be evicted for that, draws everything that is queued
- * first. Returns CAMBER_ERROR_LIMIT if the images do not fit together. */
+/* Puts all images of a command into the atlas. If other images have to be evicted for that, first draws everything that
+ * is queued. Returns CAMBER_ERROR_LIMIT if the images do not fit together. */
 camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_draw_command *command,
                                        const camber_gl_area *area);
-/* Draws everything that is queued. variant is added to the shader's. */
+/* Draws everything that is queued. The bits of variant are added to the shader's. */
 camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_gl_area *area);
 /* Drops everything that is queued. */
 void camber_batch_clear(camber_renderer *renderer);
@@ -146,20 +146,20 @@ void camber_gl_use_shader(camber_renderer *renderer, const camber_shader *shader
 void camber_gl_bind_part(camber_renderer *renderer, camber_mesh_part *part);
 /* Draws indices of the bound part. */
 void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
-/* From here on only those rows of the picture are drawn that are nearer than the far plane. */
+/* Restricts drawing, from now on, to the rows of the picture that are nearer than the far plane. */
 void camber_gl_hide_horizon(camber_renderer *renderer, const camber_gl_area *area);
 
 /* ---- gl_rows.c ---- */
 
-/* Whether the row texture can hold that many rows and that many texels of the side table. */
+/* Whether the row texture can hold row_count rows and side_texels texels of the side table. */
 bool camber_rows_fit(const camber_renderer *renderer, size_t row_count, size_t side_texels);
-/* Makes room for them. Returns CAMBER_ERROR_LIMIT if that is not possible. */
+/* Makes room for these rows and texels. Returns CAMBER_ERROR_LIMIT if that is not possible. */
 camber_status camber_rows_reserve(camber_renderer *renderer, size_t row_count, size_t side_texels);
 /* Writes a command's table, for which there must be room. */
 camber_status camber_rows_write(camber_renderer *renderer, const camber_draw_command *command, size_t table);
 /* Appends the side table to the rows, and uploads everything. */
 camber_status camber_rows_upload(camber_renderer *renderer, size_t row_count, size_t side_texels);
-/* Uploads one table of a mesh that has only widths. Rows past the paints are not drawn. */
+/* Uploads one table for a mesh, with nothing but widths. Rows past the paints are not drawn. */
 camber_status camber_rows_upload_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                         size_t paint_count);
 
@@ -167,8 +167,8 @@ camber_status camber_rows_upload_widths(camber_renderer *renderer, const camber_
 
 /* Forgets the images of the previous frame, which the caller may have changed. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_atlas_begin(camber_renderer *renderer);
-/* Puts all images of a command into the atlas. *is_full: others have to be evicted first, which camber_atlas_renew
- * does. */
+/* Puts all images of a command into the atlas. *is_full: other images have to be evicted first, which
+ * camber_atlas_renew does. */
 camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command, bool *is_full);
 /* Empties the atlas, and puts all images of a command into it. Returns CAMBER_ERROR_LIMIT if they do not fit together.
  */
@@ -184,9 +184,9 @@ void camber_atlas_release(camber_renderer *renderer, bool is_current);
  * camber_target_guard, but the scissor does not: a software driver clips all triangles of a batch one by one if a
  * single vertex is outside the viewport. */
 camber_status camber_target_bind(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
-/* In px; axis: 0 for the width, 1 for the height. */
+/* Returns how far the viewport extends beyond a side, in px. axis: 0 for the width, 1 for the height. */
 GLsizei camber_target_guard(const camber_renderer *renderer, int axis, GLsizei side);
-/* Makes a caller's texture the target CAMBER_TARGET_GIVEN, until it is taken back. */
+/* Makes a caller's texture the target CAMBER_TARGET_GIVEN until camber_target_take_back. */
 camber_status camber_target_give(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height);
 void camber_target_take_back(camber_renderer *renderer);
 void camber_targets_release(camber_renderer *renderer);

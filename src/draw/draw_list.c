@@ -1,13 +1,13 @@
 /* Makes the draw list of a frame. Only this file reads passes and paints.
  *
- * A pass becomes rows and commands. Rows are its paints, with the dashes and ramps that they refer to put into the side
+ * A pass becomes rows and commands. Rows are its paints; the dashes and ramps that these refer to are put into the side
  * table. Consecutive polylines whose rows have the same alpha make a span; a span becomes a command. A translucent span
- * needs a layer, so that a pixel is covered once however often lines cross it. The cost of a layer is that of all its
+ * needs a layer, so that a pixel is covered once however often lines cross it. A layer costs time for each of its
  * pixels. If a pass would need more than LAYERS_MAX of them, its lines are drawn out of order, with one command per
- * alpha; and if it has more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own alpha.
+ * alpha; and if it has more than ALPHAS_MAX alphas, all lines are drawn into one masked layer, each with its own alpha.
  *
  * Consecutive polygons also make a span, which needs no layer: the rasterizer takes all rings of one fill at once, and
- * changes the fill whenever they do, in the order of the polygons. If polygons and lines of a pass alternate more than
+ * changes the fill whenever the polygons do, in their order. If polygons and lines of a pass alternate more than
  * AREAS_MAX times, all polygons are drawn below the lines.
  *
  * A pass with an opacity is composited onto the picture as a whole: with the opacity of its only layer, or as a group.
@@ -22,7 +22,7 @@
 
 enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16, AREAS_MAX = 64 };
 
-/* Beyond the ends of all lines, in fractions of their length. */
+/* A position beyond the ends of all lines, as a fraction of their length. */
 static const float FAR_BEYOND = 1e9f;
 
 /* ---- Checks ---- */
@@ -157,7 +157,7 @@ static camber_status make_fill(camber_draw_list *list, const camber_fill *fill, 
     return made->has_image ? set_fill_image(list, fill, made) : CAMBER_OK;
 }
 
-/* Makes the row of a polygon, with a fill of its own. */
+/* Makes the row of a polygon, with its own fill. */
 static camber_status make_area_row(camber_draw_list *list, const camber_paint *paint, camber_row_paint *row) {
     if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
         return CAMBER_ERROR_MEMORY;
@@ -194,7 +194,7 @@ static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row
     return status;
 }
 
-/* Adds the rows of a pass to the list's, one for each of its mesh's. */
+/* Adds the rows of a pass to the list, one for each row of the pass's mesh. */
 static camber_status make_rows(row_maker *m) {
     camber_draw_list *list = m->list;
     const size_t count = m->pass->mesh->row_count;
@@ -215,18 +215,18 @@ static camber_status make_rows(row_maker *m) {
 
 typedef struct pass_lines {
     const camber_mesh *mesh;
-    const camber_row_paint *rows; /* of the pass */
-    size_t first, end;            /* polylines of it */
+    const camber_row_paint *rows; /* rows of the pass */
+    size_t first, end;            /* polylines of the pass */
     camber_overlap overlap;
 } pass_lines;
 
 typedef struct span {
     size_t first, end; /* polylines */
-    float alpha;       /* alpha of its rows that are drawn. 0: there are none; 1 if overlaps accumulate */
+    float alpha;       /* alpha of its drawn rows. 0: it has none; 1 if overlaps accumulate */
     bool one_alpha;    /* polylines of other alphas within it are not drawn */
     bool is_layered, is_masked, is_one_color;
     bool is_begun; /* one of its rows is drawn */
-    bool is_area;  /* its polygons are drawn, each with its fill; else its lines */
+    bool is_area;  /* its polygons are drawn, each with its fill; else its lines are drawn */
     camber_color color;
     unsigned features;
 } span;
@@ -357,7 +357,7 @@ typedef struct command_maker {
     camber_draw_list *list;
     const camber_pass *pass;
     const pass_lines *lines;
-    size_t first_row; /* of the list */
+    size_t first_row; /* first row of the pass in the list */
     uint32_t group;   /* 0: none yet */
 } command_maker;
 
@@ -386,7 +386,7 @@ static camber_status list_fills(const command_maker *m, const span *s) {
     return CAMBER_OK;
 }
 
-/* Adds a span. is_whole: it is its whole pass, so that its only layer or fill can take the pass's opacity. */
+/* Adds a span. is_whole: the span is the whole pass, so that its only layer or fill can take the pass's opacity. */
 static camber_status add_span(command_maker *m, span s, bool is_whole) {
     const size_t first_span = m->list->span_count;
     float opacity = 1.0f;
@@ -422,7 +422,7 @@ static camber_status add_span(command_maker *m, span s, bool is_whole) {
     return add_command(m->list, &command);
 }
 
-/* Whether the pass has more layers, or more spans of polygons, than it may have. */
+/* Whether the pass has more layers, or more spans of polygons, than a pass may have. */
 static bool has_many_spans(const pass_lines *lines, const span *first) {
     span s = *first;
     size_t layers = s.is_layered && s.alpha > 0.0f, areas = s.is_area;
@@ -443,7 +443,8 @@ static camber_status add_in_order(command_maker *m, span s) {
     return status;
 }
 
-/* Lists the alphas of a pass, ascending, and returns how many; ALPHAS_MAX + 1: there are more than ALPHAS_MAX. */
+/* Lists the alphas of a pass in ascending order, and returns how many there are, or ALPHAS_MAX + 1 if there are more
+ * than ALPHAS_MAX. */
 static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     size_t count = 0;
     for (size_t i = lines->first; i < lines->end; i++) {
@@ -465,7 +466,7 @@ static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
     return count;
 }
 
-/* Adds polygons first, in their order, and then lines, the faintest first. */
+/* Adds polygons in their order, and then lines, the faintest first. */
 static camber_status add_by_alpha(command_maker *m) {
     float alphas[ALPHAS_MAX];
     const size_t count = list_alphas(m->lines, alphas);
@@ -509,7 +510,7 @@ static float thinnest_of(const camber_frame *frame) {
     return thinnest_px;
 }
 
-/* Finds the pitch: that of the camera that the meshes were tessellated for, if there was one; else the frame's own. */
+/* Finds the pitch: of the camera that the meshes were tessellated for, if there was one, or else of the frame. */
 static camber_status find_pitch(camber_context *context, const camber_frame *frame, double *pitch_deg) {
     double pitch = frame->pitch_deg;
     bool found = pitch > 0.0;

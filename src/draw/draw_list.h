@@ -18,20 +18,20 @@ typedef enum camber_composite {
     CAMBER_COMPOSITE_STRAIGHT, /* no layer: each line is drawn over what is below it */
     CAMBER_COMPOSITE_COLORS,   /* a layer of colours */
     CAMBER_COMPOSITE_COVERAGE, /* a layer of one colour, which accumulates coverage, one line over another */
-    /* the same, but where edges meet in a pixel, it gets the exact area of the union of all lines */
+    /* the same, but a pixel in which edges meet gets the exact area of the union of all lines */
     CAMBER_COMPOSITE_UNION,
     CAMBER_COMPOSITE_MASKED, /* a layer of translucent colours, in which only the last line is seen */
     CAMBER_COMPOSITE_AREA,   /* no layer: the inside of the polylines is filled, all polygons of a fill at once */
 } camber_composite;
 
-/* A row's paint, with the positions in the side table of what it refers to. */
+/* A row's paint, with the positions of its dashes and stops in the side table. */
 typedef struct camber_row_paint {
     float half_width_px; /* including the gap. Below 0: the row is not drawn */
     float half_gap_px;   /* below 0: there is no gap */
-    float blur_px;       /* below 0: as wide, by a smooth step */
+    float blur_px;       /* below 0: -blur_px wide, by a smooth step */
     float translate_px[2];
     float trim[2];      /* fractions of the line between which it is not drawn; a trim at an end removes the cap too */
-    camber_color color; /* straight; with an image white, with the paint's alpha */
+    camber_color color; /* straight; with an image it is white, with the paint's alpha */
     unsigned features;  /* CAMBER_FEATURE_* */
     bool has_translucent_ramp;
     camber_side_dashes dashes;       /* with CAMBER_FEATURE_DASH */
@@ -45,9 +45,9 @@ enum { CAMBER_NO_FILL = -1 };
 
 /* A fill for the whole picture, or for polygons. */
 typedef struct camber_fill_paint {
-    camber_color color; /* straight, with the pass's opacity in its alpha; with an image white */
+    camber_color color; /* straight, with the pass's opacity in its alpha; with an image it is white */
     bool has_image;
-    size_t image_use, mean_use; /* of the list */
+    size_t image_use, mean_use; /* image uses of the list */
     float x_px, y_px;           /* the top left corner of one image, in the picture */
     double bearing_deg;
     camber_fill_rule rule;
@@ -56,23 +56,23 @@ typedef struct camber_fill_paint {
 /* Consecutive polygons with the same fill. */
 typedef struct camber_area_span {
     size_t first; /* polyline */
-    int32_t fill; /* of the list */
+    int32_t fill; /* a fill of the list */
 } camber_area_span;
 
 typedef struct camber_draw_command {
     camber_mesh *mesh;             /* NULL: a fill of the picture */
-    camber_fill_paint fill;        /* of the picture */
+    camber_fill_paint fill;        /* fill of the picture */
     size_t first_span, span_count; /* in the list, if composite is AREA: only its rows with a fill are drawn */
     size_t first, end;             /* polylines of the mesh */
     size_t first_row;              /* in the list's rows; every row of the mesh has one */
     unsigned features;             /* CAMBER_FEATURE_* of its rows */
     camber_composite composite;
-    bool one_alpha; /* only rows of one alpha are drawn, as opaque ones in a layer; else all, each with its own alpha */
+    bool one_alpha; /* only rows of one alpha are drawn, opaque, into a layer; else all rows, each with its own alpha */
     float alpha;
     camber_color color; /* colour of all its lines, if composite is COVERAGE or UNION */
-    /* opacity with which its layer is composited; for polygons, in addition to that of their fills */
+    /* opacity with which its layer is composited; polygons are multiplied by it in addition to their fills' opacity */
     float layer_opacity;
-    /* 0: none. Commands of one group are consecutive, and are composited onto the picture as one */
+    /* 0: none. Commands of one group are consecutive, and are composited onto the picture as a whole */
     uint32_t group;
     float group_opacity;
 } camber_draw_command;
@@ -101,13 +101,13 @@ typedef struct camber_draw_list {
     camber_plane_view view;
 } camber_draw_list;
 
-/* Checks a frame and makes its list, which replaces the list's content. Returns CAMBER_ERROR_ARGUMENT (camber.h does
- * not allow the frame), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
+/* Checks a frame and makes its list, which replaces the earlier content of *list. Returns CAMBER_ERROR_ARGUMENT
+ * (camber.h does not allow the frame), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame *frame);
 void camber_draw_list_free(camber_draw_list *list);
 
-/* Returns the alpha with which a command draws one of its mesh's rows into its layer or the picture. Below 0: it does
- * not draw it. */
+/* Returns the alpha with which a command draws one of its mesh's rows into its layer or the picture; below 0 if it does
+ * not draw the row. */
 static inline float camber_draw_command_alpha(const camber_draw_command *command, const camber_row_paint *row) {
     if (row->half_width_px < 0.0f || (row->fill == CAMBER_NO_FILL) == (command->composite == CAMBER_COMPOSITE_AREA) ||
         (command->one_alpha && row->color.a != command->alpha))

@@ -15,7 +15,7 @@ camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_fr
     return camber_draw_list_build(&renderer->list, frame);
 }
 
-/* Draws a frame. place: memory that all rows go to. NULL: they are passed to rows. */
+/* Draws a frame. place: memory for all rows. NULL: they are passed to `rows`. */
 static camber_status render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                             camber_pixel_target *place, camber_frame_stats *stats) {
     camber_frame_stats made;

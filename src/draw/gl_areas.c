@@ -1,16 +1,16 @@
 /* Fills polygons in a frame that GL draws. Shaders draw lines; kernels compute what is inside rings (kernels/area.h).
  *
  * Input: consecutive commands of polygons. Output: their picture, drawn in OpenCL on a transparent background and
- * composited onto the target as a layer. So GL and OpenCL have the same polygons, up to the rounding of that layer. */
+ * composited onto the target as a layer. So GL and OpenCL draw the same polygons, up to the rounding of this layer. */
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
-/* The longest side of a block, in px: the rasterizer takes that much at once, and that much before it. */
+/* The longest side of a block, in px: half of the longest side that the rasterizer draws at once. */
 enum { BLOCK_PX = CAMBER_TILE_PX * (CAMBER_TILES_MAX / 2) };
 
 /* ---- Blocks of the area ---- */
 
-/* Copies the last drawn block into the layer's texture. left and top are the px of the block before the area. */
+/* Copies the last drawn block into the layer's texture. left and top: how many px of the block are before the area. */
 static camber_status upload(camber_renderer *renderer, const camber_raster_area *block, const camber_gl_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const uint32_t left = block->x < area->x ? area->x - block->x : 0,
@@ -21,7 +21,7 @@ static camber_status upload(camber_renderer *renderer, const camber_raster_area 
         return status;
     const uint8_t *first = pixels.rgba + top * pixels.row_bytes + 4 * (size_t)left;
     GLuint staging = 0;
-    if (!renderer->share.surface->info.software) { /* takes half the time, because the GPU lays the texture out */
+    if (!renderer->share.surface->info.software) { /* half the time, because the GPU converts the texture's layout */
         gl->GenBuffers(1, &staging);
         gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, staging);
         gl->BufferData(GL_PIXEL_UNPACK_BUFFER, (GLsizeiptr)(pixels.row_bytes * block->height), pixels.rgba,
@@ -56,7 +56,7 @@ static camber_status draw_blocks(camber_renderer *renderer, const camber_raster_
 
 /* ---- Commands ---- */
 
-/* Makes a list of its own from the commands, whose images are in a side table that GL does not read. */
+/* Makes a separate list from the commands, whose images are in a side table that GL does not read. */
 static camber_status make_list(const camber_draw_list *from, const camber_draw_command *first, size_t count,
                                camber_draw_list *list) {
     *list = *from;

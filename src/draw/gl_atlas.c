@@ -57,7 +57,7 @@ static camber_status empty_atlas(camber_renderer *renderer) {
     return status;
 }
 
-/* Takes room for an image next to the last one, or on a shelf above. false: neither has room. */
+/* Takes room for an image next to the last one, or on a shelf above. Returns false if neither has room. */
 static bool take_room(camber_atlas *atlas, camber_atlas_image *placed) {
     const GLint width = (GLint)placed->size.width + 2, height = (GLint)placed->size.height + 2;
     if (atlas->shelf_x + width > TEXTURE_WIDTH) {

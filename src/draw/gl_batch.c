@@ -1,8 +1,9 @@
 /* Draws polylines in as few draw calls as the driver allows.
  *
  * Commands of one mesh are queued together as long as nothing has to be drawn between them. Each has a table in the row
- * texture, and a vertex must know its table. For strips, the vertex number says it, in the bits above those that the
- * mesh needs. Kite and fan have their indices in the mesh, so a uniform says it, and each command takes a call. */
+ * texture, and a vertex must know its table. For strips, the number of the vertex has the table in the bits above those
+ * that the mesh needs. Kite and fan have their indices in the mesh, so a uniform has the table, and each command takes
+ * a draw call. */
 #include "draw/renderer.h"
 #include "vertices/vertices.h"
 
@@ -14,7 +15,8 @@ _Static_assert((int)CAMBER_VARIANT_GAP == (int)CAMBER_FEATURE_GAP * CAMBER_VARIA
                    (int)CAMBER_VARIANT_MASK == 2 * (int)CAMBER_VARIANT_PATTERN,
                "features and variants are the same bits, and variants that are no features lie behind them");
 
-/* The most rows of all tables of a call. More would take more memory than another call is worth. */
+/* The most rows of all tables of a draw call. The memory for more rows would not be worth the draw call that they save.
+ */
 enum { ROWS_MAX = 1 << 20 };
 
 /* In a pitched view a segment is two triangles. */
@@ -75,14 +77,14 @@ void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, 
         gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
 }
 
-/* Returns the number of vertices of a part as it is drawn: those of the strip, or in a pitched view six per record,
- * whatever the method. */
+/* Returns the number of vertices drawn for a part: the vertices of its strips or, in a pitched view, six per record.
+ * The method makes no difference. */
 static size_t vertex_count(const camber_mesh *mesh, const camber_mesh_part *part, bool pitched) {
     const size_t records = mesh->mesh_info.strips ? part->index_count / 2 : part->slot_count;
     return pitched ? RECORD_VERTICES * records : part->index_count;
 }
 
-/* Returns how many bits the number of a vertex within its part takes. 31: no bit is left for tables. */
+/* Returns how many bits the number of a vertex within its part takes. If it returns 31, no bit is left for tables. */
 static unsigned vertex_bits(const camber_mesh *mesh, bool pitched) {
     size_t most = 0;
     for (size_t i = 0; i < mesh->part_count; i++) {
@@ -99,12 +101,12 @@ static bool has_numbered_tables(const camber_mesh *mesh, const camber_gl_area *a
     return mesh->mesh_info.strips || area->view.pitched;
 }
 
-/* Returns how many texels of the side table a command with such features needs: all or none. */
+/* Returns how many texels of the side table a command with the given features needs: all or none. */
 static size_t side_texels(const camber_renderer *renderer, unsigned features) {
     return features & (CAMBER_FEATURE_DASH | CAMBER_FEATURE_RAMP) ? renderer->list.side_table.count : 0;
 }
 
-/* Whether another command can be queued with those already queued. */
+/* Whether another command can be queued with the commands that are already queued. */
 static bool has_room(const camber_renderer *renderer, const camber_draw_command *command, const camber_gl_area *area) {
     const camber_batch *batch = &renderer->gl.batch;
     const camber_mesh *mesh = command->mesh;
@@ -122,7 +124,7 @@ camber_status camber_batch_hold_images(camber_renderer *renderer, const camber_d
     camber_status status = camber_atlas_hold(renderer, command, &is_full);
     if (status != CAMBER_OK || !is_full)
         return status;
-    status = camber_batch_draw(renderer, 0, area); /* it needs images that may be evicted now */
+    status = camber_batch_draw(renderer, 0, area); /* what is queued needs images that may be evicted now */
     return status == CAMBER_OK ? camber_atlas_renew(renderer, command) : status;
 }
 

@@ -1,6 +1,7 @@
-/* Draws the commands of a list into one area. Straight ones go directly onto the target, and are queued in a batch as
- * long as possible. The lines of others are drawn into a layer, which a shader flattens onto the target. The commands
- * of a group are drawn into a target of their own, which is then composited onto the area's target as a whole. */
+/* Draws the commands of a list into one area. Straight commands draw directly onto the target, and are queued in a
+ * batch as long as possible. The lines of other commands are drawn into a layer, which a shader flattens onto the
+ * target. The commands of a group are drawn into a separate target, which is then composited onto the area's target as
+ * a whole. */
 #include "draw/renderer.h"
 
 #include <math.h>
@@ -126,7 +127,8 @@ static camber_status set_images(camber_renderer *renderer, const camber_shader *
     return CAMBER_OK;
 }
 
-/* Draws a fill. A colour covers everything. Images are in the plane, and there are none beyond the far plane. */
+/* Draws a fill. A colour covers the whole picture. Images are in the plane of the map, so none are drawn beyond the far
+ * plane. */
 static camber_status draw_fill(camber_renderer *renderer, const camber_draw_command *command,
                                const camber_gl_area *area) {
     const camber_fill_paint *fill = &command->fill;
@@ -150,7 +152,7 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_draw_comm
 static camber_status draw_areas(camber_renderer *renderer, const camber_draw_command *first,
                                 const camber_draw_command *end, const camber_gl_area *area) {
     const float whole[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-    camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
+    camber_status status = camber_batch_draw(renderer, 0, area); /* what is queued is below */
     if (status == CAMBER_OK)
         status = camber_target_bind(renderer, CAMBER_TARGET_LAYER, (GLsizei)area->width, (GLsizei)area->height);
     if (status == CAMBER_OK)
@@ -164,13 +166,13 @@ static camber_status draw_command(camber_renderer *renderer, const camber_draw_c
                                   const camber_gl_area *area) {
     if (command->mesh && command->composite == CAMBER_COMPOSITE_STRAIGHT)
         return camber_batch_add(renderer, command, area);
-    const camber_status status = camber_batch_draw(renderer, 0, area); /* it is below */
+    const camber_status status = camber_batch_draw(renderer, 0, area); /* what is queued is below */
     if (status != CAMBER_OK)
         return status;
     return command->mesh ? draw_layered(renderer, command, area) : draw_fill(renderer, command, area);
 }
 
-/* Draws commands that go onto the same target. */
+/* Draws commands that have the same target. */
 static camber_status draw_commands(camber_renderer *renderer, const camber_draw_command *first,
                                    const camber_draw_command *end, const camber_gl_area *area) {
     camber_status status = CAMBER_OK;

@@ -21,7 +21,7 @@ void camber_gl_release(camber_renderer *renderer, bool is_current) {
     camber_free(context, drawing->rows.texels);
 }
 
-/* Returns the area of this size in the top left corner of the picture. */
+/* Returns an area of the given size in the top left corner of the picture. */
 static camber_gl_area make_area(const camber_renderer *renderer, const camber_frame *frame, uint32_t width,
                                 uint32_t height, size_t *draw_calls) {
     return (camber_gl_area){.width = width,
@@ -58,7 +58,7 @@ static camber_status draw_area(camber_renderer *renderer, const camber_frame *fr
     gl->Disable(GL_DITHER);
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
-    camber_batch_clear(renderer); /* left over from a frame that failed */
+    camber_batch_clear(renderer); /* polylines may be left over from a frame that failed */
     status = camber_atlas_begin(renderer);
     if (status == CAMBER_OK)
         status = camber_gl_draw_commands(renderer, area);
@@ -136,6 +136,6 @@ camber_status camber_gl_render(camber_renderer *renderer, const camber_frame *fr
     if (status == CAMBER_OK)
         renderer->share.frames_done = renderer->share.frames_begun;
     else
-        camber_surface_forget_errors(renderer->share.surface); /* the next frame must only see its own */
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame must see only its own errors */
     return status;
 }

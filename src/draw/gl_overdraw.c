@@ -1,13 +1,13 @@
 /* Counts overdraw on the GPU: all fragments, and the pixels that a range of indices covers once and more than once.
  *
- * Every fragment adds 1 of 255 to an 8-bit channel, which stays at 255 when it is full. If a pixel shows 255, too much
- * was drawn before the counts were read, and the same is drawn again in smaller steps. So no count is lost, and no
- * extension is needed.
+ * Every fragment adds 1/255 to an 8-bit channel, which stays at 255 when it is full. If a pixel shows 255, too much was
+ * drawn before the counts were read, and the same triangles are drawn again in smaller steps. So no count is lost, and
+ * no extension is needed.
  *
- * A range takes two draw calls, which use the stencil; it is 0 before them:
- *   cover    where it is 0, adds 1 to the drawn pixels; everywhere, a fragment with coverage adds 1 to it
- *   repeat   where it is 2 or more, adds 1 to the repeated pixels; everywhere, back to 0
- * so that only the first fragment of a pixel passes. */
+ * A range takes two draw calls, which use the stencil. The stencil is 0 before them:
+ *   cover    if it is 0, adds 1 to the drawn pixels; each fragment with coverage then adds 1 to the stencil
+ *   repeat   if it is 2 or more, adds 1 to the repeated pixels; the stencil is then set back to 0
+ * So only the first fragment of a pixel passes. */
 #include "draw/renderer.h"
 #include "vertices/vertices.h"
 
@@ -18,7 +18,7 @@ enum {
     SIDE_MAX_PX = 65535,
     AREA_SIDE_PX = 2048,
     FULL = 255,            /* a channel */
-    INDICES_MAX = 3 << 28, /* for a draw call: fits into a signed 32-bit number, has whole triangles, and is even */
+    INDICES_MAX = 3 << 28, /* of a draw call: fits into a signed 32-bit number, has whole triangles, and is even */
     INDICES_LEAST = 252,   /* the same, and no pixel can be full after so few */
     COVERED = 0,
     EVERY = 1, /* the channels that stroke.frag and count.frag add to */
@@ -139,7 +139,7 @@ typedef struct cursor {
     uint64_t index;
 } cursor;
 
-/* Draws the triangles that end with one of the next indices, and returns where it stopped. It draws at most that many
+/* Draws the triangles that end with one of the next indices, and returns where it stopped. It draws at most `indices`
  * indices. */
 static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     const uint64_t shared = shared_indices(c->desc->mesh);
@@ -263,7 +263,7 @@ static camber_status count_area(counting *c) {
         camber_target_bind(c->renderer, CAMBER_TARGET_COUNTS, (GLsizei)c->area.width, (GLsizei)c->area.height);
     if (status != CAMBER_OK)
         return status;
-    c->bound = NULL; /* the target's texture is now bound in place of the rows */
+    c->bound = NULL; /* the target's texture is now bound instead of the rows */
     camber_gl_use_shader(c->renderer, c->raster, c->desc->mesh, &c->area);
     camber_gl_use_shader(c->renderer, c->every, c->desc->mesh, &c->area);
     status = count_fragments(c);
@@ -339,7 +339,7 @@ camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const ca
         status = camber_surface_make_current(renderer->share.surface);
         if (status != CAMBER_OK)
             return status;
-        renderer->share.frames_begun++; /* what it draws with must not change before it is done */
+        renderer->share.frames_begun++; /* the buffers that it reads must not change before it is done */
         status = prepare(&c, &list);
         if (status == CAMBER_OK)
             status = count_areas(&c);

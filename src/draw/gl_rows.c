@@ -1,5 +1,5 @@
 /* The row texture: one table for each queued command, in which every row of its mesh has CAMBER_ROW_TEXELS texels, and
- * after the tables the side table. stroke.vert says what is in each texel. */
+ * then the side table. stroke.vert says what is in each texel. */
 #include "draw/renderer.h"
 
 #include <string.h>

@@ -28,7 +28,8 @@ static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsi
     return status;
 }
 
-/* Adds a stencil. Not every driver accepts stencil without depth, although depth is not needed. */
+/* Adds a stencil buffer. Not every driver accepts a stencil without depth, so it has depth too, which is not needed.
+ */
 static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
     gl->GenRenderbuffers(1, &target->stencil);
     gl->BindRenderbuffer(GL_RENDERBUFFER, target->stencil);
@@ -106,7 +107,7 @@ void camber_targets_release(camber_renderer *renderer) {
         release(&renderer->share.surface->gl, renderer->gl.targets + i);
 }
 
-/* The texture is the caller's; only the framebuffer goes. */
+/* The texture is the caller's, so only the framebuffer is deleted. */
 void camber_target_take_back(camber_renderer *renderer) {
     renderer->gl.targets[CAMBER_TARGET_GIVEN].texture = 0;
     release(&renderer->share.surface->gl, renderer->gl.targets + CAMBER_TARGET_GIVEN);

@@ -1,5 +1,5 @@
 /* Prepares images that lines and fills are drawn with. The host averages each to about the size at which it is drawn,
- * and adds a border with what is beyond its edges, so that no filter reaches into a neighbour. */
+ * and adds a border of one texel, so that no filter reads a neighbouring image. */
 #include "draw/images.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ void camber_image_set_free(camber_image_set *set) {
     camber_free(set->context, set->images);
 }
 
-/* Returns the slot that has the image, or the free one that it goes to. */
+/* Returns the slot that has the image, or else the free slot for it. */
 static uint32_t *find_slot(const camber_image_set *set, const camber_image *image) {
     size_t at = (size_t)camber_hash(CAMBER_HASH_START, &image, sizeof image) & (set->slot_count - 1);
     while (set->slots[at] && set->images[set->slots[at] - 1] != image)
@@ -28,7 +28,7 @@ static uint32_t *find_slot(const camber_image_set *set, const camber_image *imag
     return set->slots + at;
 }
 
-/* Makes room for one image more, so that at most half of the slots are in use. */
+/* Makes room for one more image, so that at most half of the slots are in use. */
 static camber_status grow_set(camber_image_set *set) {
     if (!camber_grow(set->context, &set->images, &set->capacity, set->count + 1, sizeof *set->images))
         return CAMBER_ERROR_MEMORY;
@@ -93,7 +93,7 @@ camber_image_use camber_image_use_on_line(const camber_image *image, size_t numb
 }
 
 /* Returns the texels for a side that is drawn at this length: all pixels of the image, unless they are far finer than
- * those of the picture. Sizes go in steps of sqrt(2), so that zooming does not fill the texture. */
+ * the pixels of the picture. Sizes differ by steps of sqrt(2), so that zooming does not fill the texture. */
 static uint32_t texels_for(uint32_t side_px, double drawn_px) {
     const double most = (double)(side_px < CAMBER_IMAGE_TEXELS_MAX ? side_px : CAMBER_IMAGE_TEXELS_MAX),
                  step = 1.4142135623730951;
@@ -114,7 +114,7 @@ const uint8_t *camber_image_row(const camber_image *image, uint32_t y) {
     return image->rgba + y * (image->stride_bytes ? image->stride_bytes : 4 * (size_t)image->width);
 }
 
-/* Averages the px of a row that fall on each texel, weighted by their share of it. */
+/* Averages the pixels of a row that overlap each texel, weighted by the fraction of the texel that they cover. */
 static void shrink_row(const camber_image *image, uint32_t y, float *texels, uint32_t count) {
     const uint8_t *row = camber_image_row(image, y);
     const double share = (double)image->width / count;
@@ -153,7 +153,8 @@ static void shrink(const camber_image *image, const camber_image_size *size, flo
     }
 }
 
-/* Adds a border: beyond an edge is the opposite edge; above and below an image that is not tiled, the same edge. */
+/* Adds a border: each side of it repeats the opposite edge of the image; above and below an image that is not tiled it
+ * repeats the near edge. */
 static void add_border(const camber_image_size *size, uint8_t *texels) {
     const size_t width = size->width, height = size->height, stride = 4 * (width + 2);
     for (size_t y = 1; y <= height; y++) {

@@ -5,11 +5,11 @@
 #include "base/base.h"
 #include "camber.h"
 
-enum { CAMBER_IMAGE_TEXELS_MAX = 2046 }; /* a side */
+enum { CAMBER_IMAGE_TEXELS_MAX = 2046 }; /* along each side */
 
 /* An image at the size that a row or a fill draws it in. */
 typedef struct camber_image_use {
-    const camber_image *image;  /* of the caller */
+    const camber_image *image;  /* the caller's image */
     size_t number;              /* number of the image among all images of the frame */
     double width_px, height_px; /* 0: one texel, the image's mean */
     bool tiled;                 /* it repeats downwards too; else only to the right */
@@ -17,7 +17,7 @@ typedef struct camber_image_use {
 
 typedef struct camber_image_size {
     uint32_t width, height; /* texels */
-    bool tiled;             /* beyond its upper edge is its lower one */
+    bool tiled;             /* above its upper edge its lower edge is repeated */
 } camber_image_size;
 
 /* The images of a frame, each once, numbered in the order in which they are added. */
@@ -31,21 +31,21 @@ typedef struct camber_image_set {
 
 void camber_image_set_clear(camber_image_set *set);
 void camber_image_set_free(camber_image_set *set);
-/* Gets the number of an image, after adding it if the set does not have it. Returns CAMBER_ERROR_ARGUMENT (camber.h
- * does not allow the image), CAMBER_ERROR_MEMORY. */
+/* Finds the number of an image, after adding the image if the set does not have it. Returns CAMBER_ERROR_ARGUMENT
+ * (camber.h does not allow the image), CAMBER_ERROR_MEMORY. */
 camber_status camber_image_set_add(camber_image_set *set, const camber_image *image, size_t *number);
 
-/* Returns the use of an image by a line of this width, over a length of line (0: the length that keeps the image's
- * aspect ratio). */
+/* Returns the use of an image by a line of the given width. length: how much of the line an image takes (0: the length
+ * that keeps the image's aspect ratio). */
 camber_image_use camber_image_use_on_line(const camber_image *image, size_t number, double stroke_px, double length_px);
-/* Returns the use of an image by a fill, over this size in px (0: the image's own). */
+/* Returns the use of an image by a fill, in the given size in px (0: the image's own). */
 camber_image_use camber_image_use_in_fill(const camber_image *image, size_t number, double width_px, double height_px);
 /* Returns the use of an image as its mean colour. */
 camber_image_use camber_image_use_as_mean(const camber_image *image, size_t number);
 
 /* Returns the size in texels for a use. nearest: the most px of the picture that one px of the plane takes. */
 camber_image_size camber_image_texels(const camber_image_use *use, double nearest);
-/* Writes RGBA8 with one texel more on each side. Returns CAMBER_ERROR_MEMORY. */
+/* Writes RGBA8 with a border of one texel. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_image_size size,
                                   uint8_t *texels);
 const uint8_t *camber_image_row(const camber_image *image, uint32_t y);

@@ -16,18 +16,18 @@ typedef struct camber_pixel_target {
     size_t row_bytes, stride_bytes;
 } camber_pixel_target;
 
-/* A camber_rows_fn that copies rows to such memory. */
+/* A camber_rows_fn that copies rows to a camber_pixel_target. */
 bool camber_pixel_target_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path; /* NULL: there is no surface */
     camber_draw_list list;         /* list of the current frame */
-    /* Draws in OpenCL; GL then only brings its pixels into textures. NULL: GL draws. */
+    /* Draws in OpenCL; GL then only copies the pixels into textures. NULL: GL draws. */
     struct camber_raster *raster;
     struct camber_raster *areas; /* fills polygons if GL draws the rest. NULL: not needed so far */
     camber_shared_buffer pixels; /* pixels that the rasterizer writes and GL reads */
-    camber_gl_drawing gl;        /* what GL draws with. Empty without a surface */
+    camber_gl_drawing gl;        /* the objects that GL draws with. Empty without a surface */
 };
 
 /* Checks a frame and resolves it into the renderer's list. */

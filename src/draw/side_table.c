@@ -37,7 +37,7 @@ static camber_status add_texels(camber_side_table *table, size_t texels, uint32_
     return *added ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-/* ---- Dashes: a texel each, from where to where it goes, px ---- */
+/* ---- Dashes: one texel each, with its beginning and its end, px ---- */
 
 /* Returns the period in the dash's own unit. */
 static double period_of(const camber_dash *dash) {
@@ -107,7 +107,7 @@ camber_status camber_side_table_add_dash(camber_side_table *table, const camber_
     return CAMBER_OK;
 }
 
-/* ---- Ramps: two texels a stop, where it lies and its premultiplied colour ---- */
+/* ---- Ramps: two texels per stop, its position and its premultiplied colour ---- */
 
 static bool is_ramp(const camber_ramp *ramp) {
     if (ramp->count == 0 || ramp->count > CAMBER_RAMP_STOPS_MAX)
@@ -123,8 +123,8 @@ static bool is_ramp(const camber_ramp *ramp) {
     return true;
 }
 
-/* Finds a ramp; NULL: the table does not have it. Searches from the end, because consecutive rows usually have the
- * same. */
+/* Finds a ramp, or returns NULL if the table does not have it. It searches from the end, because consecutive rows
+ * usually have the same ramp. */
 static const camber_side_ramp *find_ramp(const camber_side_table *table, const camber_ramp *ramp) {
     for (size_t i = table->ramp_count; i-- > 0;)
         if (table->ramps[i].ramp == ramp)

@@ -29,7 +29,7 @@ typedef struct camber_side_table {
     size_t count, capacity;
     camber_side_ramp *ramps; /* ramps that are in the table */
     size_t ramp_count, ramp_capacity;
-    /* The dashes that were added last: consecutive rows usually have the same. */
+    /* The dashes that were added last; consecutive rows usually have the same dashes. */
     const camber_dash *dash; /* NULL: none yet */
     float dash_unit_px;
     camber_side_dashes dashes;
@@ -40,8 +40,8 @@ void camber_side_table_free(camber_side_table *table);
 /* Adds texels that are all 0; the pointer is valid until the next call. NULL: out of memory. */
 float *camber_side_table_add(camber_side_table *table, size_t texels);
 
-/* These add a dash, whose lengths are given in this unit, or a ramp, unless the table has it, and say where it is. They
- * return CAMBER_ERROR_ARGUMENT (camber.h does not allow it), CAMBER_ERROR_LIMIT (the table is full),
+/* These add a dash, whose lengths are in the given unit, or a ramp, unless the table has it, and return its position.
+ * They return CAMBER_ERROR_ARGUMENT (camber.h does not allow it), CAMBER_ERROR_LIMIT (the table is full),
  * CAMBER_ERROR_MEMORY. */
 camber_status camber_side_table_add_dash(camber_side_table *table, const camber_dash *dash, float unit_px,
                                          bool is_round, camber_side_dashes *dashes);

@@ -73,7 +73,7 @@ static camber_status draw_area(camber_renderer *renderer, const camber_raster_sc
         return status;
     status = camber_raster_draw_into(renderer->raster, scene, area, pixels->buffer);
     camber_saved_log kept = {0};
-    const bool told = status != CAMBER_OK; /* logging another error would give a second message */
+    const bool told = status != CAMBER_OK; /* another error would be logged as a second message */
     if (told)
         camber_log_demote_errors(renderer->share.device->context, &kept);
     /* If memory was short, meshes of another surface may have released buffers, which made its context current. */

@@ -1,10 +1,10 @@
-/* The attribution of a set of features: the credits that its files contain, as plain text, each text once. Nothing is
- * guessed from the data, because any road may have a key that OpenStreetMap also uses. */
+/* The attribution of a set of features: the credits that its files contain, as plain text, each text once. The origin
+ * is never guessed from the data, because any road may have a key that OpenStreetMap also uses. */
 #include "features/features.h"
 
 #include <ctype.h>
 
-/* TileJSON's attributions are HTML. */
+/* A character entity of HTML. TileJSON's attributions are HTML. */
 typedef struct entity {
     const char *name, *text;
 } entity;
@@ -20,7 +20,8 @@ static const entity *find_entity(const char *at) {
     return NULL;
 }
 
-/* Returns the text after the tag that begins here, or NULL if none does. A tag has a name; a < without one is text. */
+/* Returns the text after the tag that begins here, or NULL if no tag begins here. A tag has a name; a < without a name
+ * is text. */
 static const char *skip_tag(const char *at) {
     if (*at != '<' || !(isalpha((unsigned char)at[1]) || at[1] == '/' || at[1] == '!'))
         return NULL;

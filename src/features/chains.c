@@ -14,7 +14,7 @@ static camber_chain follow_chain(const camber_chains_desc *desc, uint32_t start)
     return made;
 }
 
-/* Works in three rounds, so that chains keep the direction of their lines if these agree. */
+/* Finds chains in three rounds, so that a chain has the direction of its lines if all of them have the same. */
 static size_t find_chains(const camber_chains_desc *desc, camber_chain *chains) {
     size_t count = 0;
     for (int round = 0; round < 3; round++) {

@@ -9,7 +9,7 @@
 /* End e is the first point of line e / 2 if e is even, and its last point if e is odd. */
 typedef struct camber_chain {
     uint32_t start; /* the end at which the chain begins */
-    uint32_t key;   /* the lowest key of its lines */
+    uint32_t key;   /* the lowest key of the chain's lines */
 } camber_chain;
 
 typedef struct camber_chains_desc {
@@ -20,9 +20,9 @@ typedef struct camber_chains_desc {
     bool *visited; /* line_count, scratch: the caller sets it for lines that are to be skipped */
 } camber_chains_desc;
 
-/* Finds the chains and sorts them by key. Chains with the same key come in three groups: those that begin with the
- * first point of a line, the other open ones, and rings, which begin at the first point of their lowest line. Free
- * *chains with camber_free. */
+/* Finds the chains and sorts them by key. Chains with the same key come in three groups: open chains that begin with
+ * the first point of a line, the other open chains, and rings, which begin at the first point of their lowest line.
+ * Free *chains with camber_free. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_chains_find(camber_context *context, const camber_chains_desc *desc, camber_chain **chains,
                                  size_t *count);
 

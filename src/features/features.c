@@ -1,4 +1,4 @@
-/* A set of features in memory: how it grows, and how equal values are stored only once.
+/* A set of features in memory: adds features to it, and stores equal values only once.
  *
  * Input: the lines and attributes from a reader, one feature after the other. Output: camber_features. Texts and values
  * are interned, so that equal ones have the same pointer; features with equal attributes form one class.
@@ -15,7 +15,7 @@
 /* Hash tables use open addressing with linear probing. At most half of the slots are in use, so that probes stay short.
  */
 typedef struct interned {
-    camber_value value; /* the array or object that the text means as JSON, once somebody has asked for it */
+    camber_value value; /* the array or object that the text encodes as JSON, if a caller has asked for it */
     char text[];
 } interned;
 
@@ -24,14 +24,14 @@ typedef struct interner {
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
-    camber_value *read; /* scratch: the values of a class that is looked up. NULL: none was yet */
-    uint32_t layer;     /* the layer of the last lookup, and whether the style's layers name it */
+    camber_value *read; /* scratch: the values of the class that is being looked up. NULL: no class was looked up yet */
+    uint32_t layer;     /* the layer of the last lookup, and whether a layer of the style names it */
     bool layer_is_named;
 } interner;
 
 enum { FIRST_SLOTS = 256 };
 
-/* Frees a value whose items and members are memory of the set. */
+/* Frees the items and members of a value, which the set owns. */
 static void free_value(camber_context *context, camber_value *value) {
     if (value->type == CAMBER_VALUE_ARRAY) {
         camber_value *items = (camber_value *)(uintptr_t)value->items;
@@ -212,7 +212,7 @@ static bool is_taken(const camber_features *features, const camber_schema *schem
     return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
-/* Whether the other style leaves the same classes to plain layers, and its symbol layers take the same. */
+/* Whether the other style leaves the same classes to plain layers, and its symbol layers take the same classes. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
@@ -227,7 +227,7 @@ static bool takes_the_same(const camber_features *features, const camber_schema 
 }
 
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style) {
-    /* A region drops the classes that no symbol layer takes, so they cannot be asked. */
+    /* A set with a region drops the classes that no symbol layer takes, so these cannot be compared. */
     const bool dropped = features->has_region && camber_features_label_kinds(features);
     return is_of_files(features) && !dropped && reads_the_same(features->schema, schema) &&
            takes_the_same(features, schema, style);
@@ -507,8 +507,8 @@ static bool layer_is_named(camber_features *features, const camber_feature_class
     return set->layer_is_named;
 }
 
-/* Replaces the values that no layer reads for such features by null, so that they do not split classes needlessly.
- * Returns NULL if there is no memory. */
+/* Replaces values by null if no layer reads them for features of this kind and layer, so that they do not split classes
+ * needlessly. Returns NULL if there is no memory. */
 static const camber_value *read_values(camber_features *features, const camber_feature_class *one,
                                        const camber_value *values) {
     interner *set = features->interned;
@@ -524,7 +524,7 @@ static const camber_value *read_values(camber_features *features, const camber_f
     return set->read;
 }
 
-/* The kinds that are drawn. */
+/* Returns the kinds that are drawn, CAMBER_KIND_*. */
 static unsigned drawn_kinds(const camber_schema *schema, bool unsorted) {
     const bool plain_areas = unsorted && schema->wants_plain_areas;
     return CAMBER_KIND_LINE | (schema->wants_polygons || plain_areas ? CAMBER_KIND_POLYGON : 0u) |
@@ -640,7 +640,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Makes room for this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
+/* Makes room for the progress of this many polylines, and gives the last one the progress of a whole line, 0 to 1. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))
@@ -655,7 +655,7 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
-    if (!features->progress) /* there is no polyline to set it for */
+    if (!features->progress) /* there is no polyline yet */
         return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;

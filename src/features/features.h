@@ -17,39 +17,40 @@ typedef struct camber_feature_class {
     camber_geometry_kind geometry;
     size_t first_value;      /* index into values: schema->property_count values in the order of the schema */
     camber_value id;         /* null if the style does not read it */
-    const camber_value *all; /* an object of all properties, if the style reads them. NULL: none */
+    const camber_value *all; /* an object with all properties, if the style needs them. NULL: none */
     bool unsorted;           /* its file has no schema that says which features are roads, rivers or buildings */
     bool plain;              /* no ordinary layer draws it at any zoom, so plain layers do */
-    bool labelled;           /* of a label's kind: a symbol layer takes it */
+    bool labelled;           /* for a label's kind: a symbol layer takes it */
 } camber_feature_class;
 
 struct camber_features {
     camber_context *context;
-    const camber_schema *schema; /* the style's */
+    const camber_schema *schema; /* the schema of the style */
     const camber_style *style;   /* the style that draws the features; readers know only its schema */
 
     /* Web Mercator world coordinates: pairs x, y from 0 to 1; the origin is the north-west corner, y grows southwards.
      */
     double *points;
     size_t point_count, point_capacity;
-    /* point_count: how much each point matters, in world coordinates (lines/importance.h). Set after a file is read. A
-     * node that several polylines of a file share has the same importance in all of them. */
+    /* point_count: how much each point matters, in world coordinates (lines/importance.h). It is computed after a file
+     * was read. If several polylines of a file share a node, its importance is the same in all of them. */
     float *importance;
     size_t importance_capacity;
-    /* Polyline i has the points [offsets[i], offsets[i + 1]). polyline_count + 1 entries, or none while the set is
-     * empty. */
+    /* polyline_count + 1 entries, or none while the set is empty: polyline i has the points
+     * [offsets[i], offsets[i + 1]). */
     size_t *offsets;
     size_t polyline_count, polyline_capacity;
-    uint32_t *polyline_feature; /* polyline_count, ascending: the feature that it belongs to, or the first of them if
-                                   several were merged */
-    uint32_t *feature_counts; /* polyline_count: the number of features whose first line is in it. The sum is the number
-                                 of features */
+    uint32_t *polyline_feature; /* polyline_count, ascending: the feature that the polyline belongs to, or the first one
+                                   if several features were merged into it */
+    uint32_t *feature_counts; /* polyline_count: the number of features whose first line is in the polyline. The sum is
+                                 the number of features */
     /* 2 * polyline_count: line-progress at a polyline's first and last point. Between them it grows with the length in
-     * world coordinates. NULL: 0 and 1 for all. */
+     * world coordinates. NULL: 0 and 1 for all polylines. */
     float *progress;
     size_t progress_capacity;
 
-    /* polyline_count: the number of points that a polyline had before the set was thinned (thin.c). NULL: it was not */
+    /* polyline_count: the number of points that a polyline had before the set was thinned (thin.c). NULL: it was not
+     * thinned */
     uint32_t *whole_counts;
 
     uint32_t *feature_class; /* feature_count */
@@ -76,8 +77,8 @@ struct camber_features {
     void (*free_sprites)(
         struct camber_sprites *sprites); /* a pointer, because the module that reads files does not contain sprites */
 
-    struct camber_fonts *fonts; /* what labels are drawn with. NULL: not read, and there are no labels */
-    void *fonts_user;           /* of the glyphs that they read */
+    struct camber_fonts *fonts;                    /* the fonts of labels. NULL: not read, so there are no labels */
+    void *fonts_user;                              /* user data for reading their glyphs */
     void (*free_fonts)(camber_features *features); /* a pointer, as for sprites */
 
     void *interned; /* the hash tables of strings and classes (features.c) */
@@ -86,14 +87,14 @@ struct camber_features {
 /* Makes an empty set. The style and its schema must outlive it. */
 camber_status camber_features_create_for(camber_context *context, const camber_schema *schema,
                                          const camber_style *style, camber_features **features);
-/* Whether reading the same files for another style would give the same set: all features come from files, and the other
- * style reads the same from them. */
+/* Whether reading the same files for another style would give the same set, because all features are from files and the
+ * other style reads the same features and properties from them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
-/* Frees the points of the lines, which take most of a set's memory, after its last scene was made: no other can be made
- * or moved, and nothing more can be read. */
+/* Frees the points of the lines, which take most of a set's memory. Call this after the set's last scene was made,
+ * because no other scene can be made or moved afterwards, and no file can be read. */
 void camber_features_release_points(camber_features *features);
 
-/* ---- Marks: the state to return to if reading fails half way ---- */
+/* ---- Marks: the state to which a set returns if reading fails half way ---- */
 
 typedef struct camber_features_mark {
     size_t point_count, polyline_count, feature_count;
@@ -111,22 +112,23 @@ void camber_features_reset(camber_features *features, const camber_features_mark
 /* Returns the set's own copy of the text. Equal texts have the same pointer. */
 camber_status camber_features_intern(camber_features *features, const char *text, const char **interned);
 camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
-/* Returns the value that the text means, as the set's own copy. Values with the same text have the same pointer. */
+/* Returns the set's own copy of a JSON value. Values with the same text have the same pointer. */
 camber_status camber_features_intern_json(camber_features *features, const json_t *json, const camber_value **value);
-/* values: schema->property_count of them, interned. */
+/* Finds the class with these values, or adds it. values: schema->property_count interned values. */
 camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
                                          const camber_value *values, uint32_t *class_index);
-/* Does the same for a class with an id and all properties. It ignores wanted's source, first_value and plain. */
+/* Does the same for a class that also has an id and an object with all properties. Ignores the source, first_value and
+ * plain in `wanted`. */
 camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
                                             const camber_value *values, uint32_t *class_index);
 /* Returns the kinds of geometry that are read, CAMBER_KIND_*. unsorted: see camber_feature_class. */
 unsigned camber_features_kinds(const camber_features *features, bool unsorted);
-/* Whether a property is read. If no labels are wanted, properties that only symbol layers read are not. */
+/* Whether a property is read. Properties that only symbol layers read are read only if labels are wanted. */
 bool camber_features_reads_property(const camber_features *features, size_t property);
-/* Describes the features that are left out if these kinds are read. Completes "left out what is". */
+/* Describes the features that are left out if only these kinds are read, in words that complete "left out what is". */
 const char *camber_features_left_out(unsigned kinds);
-/* Whether features of this class are kept. Some kinds are read only because a class might be plain, and those of labels
- * only because a symbol layer might take them. */
+/* Whether features of this class are kept. Some kinds are read only because a class might be plain, and the kinds of
+ * labels are read only because a symbol layer might take their features. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
 /* Adds a polyline to the feature that was added last. points: pairs of world coordinates. */
@@ -138,51 +140,52 @@ camber_status camber_features_add_attribution(camber_features *features, const c
 /* Cuts the attribution back to size bytes, which must be an earlier attribution_size. */
 void camber_features_cut_attribution(camber_features *features, size_t size);
 
-/* ---- Labels (labels.c): the same features once more, of kinds of their own ---- */
+/* ---- Labels (labels.c): the same features once more, with kinds of their own ---- */
 
-/* Files that are read from now on give the features of symbol layers, too. */
+/* Files that are read from now on are also read for symbol layers. */
 void camber_features_want_labels(camber_features *features);
-/* The kinds of labels that are read, CAMBER_KIND_*. 0: none. */
+/* Returns the kinds of labels that are read, CAMBER_KIND_*. 0: none. */
 unsigned camber_features_label_kinds(const camber_features *features);
-/* The first polyline of labels among those from this one on, if labels come last. polyline_count: there is none. */
+/* Returns the first polyline of labels from first_polyline on, or polyline_count if there is none. Labels must come
+ * after all other features. */
 size_t camber_features_find_labels(const camber_features *features, size_t first_polyline);
-/* Puts the features of labels behind all others of first_polyline and after it, which have no importance yet. So labels
- * change nothing about the lines that are drawn. */
+/* Moves the features of labels after all other features from first_polyline on, so that labels do not change the lines
+ * that are drawn. These polylines must not have importance yet. */
 camber_status camber_features_part_labels(camber_features *features, size_t first_polyline);
-/* How many features are there, without those of labels. */
+/* Returns the number of features that are not labels. */
 size_t camber_features_count_drawn(const camber_features *features);
-/* Counts features, polylines and points for the stats, without those of labels. */
+/* Counts features, polylines and points for the statistics, without labels. */
 void camber_features_count(camber_features *features);
 
 typedef enum camber_merge_rule {
     CAMBER_MERGE_ANY = 0,  /* at points at which exactly two ends of a class meet */
-    CAMBER_MERGE_DIRECTED, /* the same, but only if one line ends and the other starts there */
+    CAMBER_MERGE_DIRECTED, /* at such points, if one of the two lines ends and the other starts there */
     CAMBER_MERGE_STRAIGHT, /* at points at which two lines continue almost straight, whatever else meets there */
 } camber_merge_rule;
 
 /* If merges is set, merges the lines (not the areas) from first_polyline on. Then computes the importance of the
- * points, and drops lines outside the set's region. Measures the time of both steps. If the style depends on the
- * direction of lines, ANY becomes DIRECTED. Lines of labels are always merged: whatever their
- * directions, unless icons show them. */
+ * points, and drops lines outside the set's region. It measures the time that both steps take. If the style depends on
+ * the direction of lines, ANY becomes DIRECTED. Lines of labels are always merged. Their directions count only if icons
+ * show them. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges the lines from first_polyline on. */
 camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
 /* Computes the importance of the points from first_polyline on. */
 camber_status camber_features_set_importance(camber_features *features, size_t first_polyline);
-/* Whether a line touches the region, or an area whose rings begin with this polyline. *next is the polyline after the
- * line, or after the rings of the area. */
+/* Whether the line or area that begins with this polyline touches the region. *next is the polyline after the line, or
+ * after the rings of the area. */
 bool camber_features_touch(const camber_features *features, const camber_region *region, size_t polyline, size_t *next);
 /* Drops the lines and areas from first_polyline on that do not touch the region (region.c). */
 camber_status camber_features_confine(camber_features *features, size_t first_polyline, const camber_region *region);
-/* Sorts the features from first_feature on by their keys, and keeps the order of those with equal keys. Their lines
- * begin with first_polyline, and have no importance or progress yet. */
+/* Sorts the features from first_feature on by their keys, and keeps the order of features with equal keys. Their lines
+ * begin with first_polyline, and must not have importance or progress yet. */
 camber_status camber_features_reorder(camber_features *features, size_t first_polyline, size_t first_feature,
                                       const int64_t *keys);
 /* Frees the unused capacity of the arrays of lines and points. */
 void camber_features_shrink(camber_features *features);
-/* Drops points of lower importance, except for the ends of lines. After that, draw only pictures that leave such points
- * out anyway. Returns CAMBER_ERROR_MEMORY. */
+/* Drops points of lower importance, except for the ends of lines. Afterwards, the set may only be used for pictures
+ * that leave such points out anyway. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_features_thin(camber_features *features, float least_importance);
 /* Returns how many points a polyline had when it was read. */
 static inline size_t camber_features_whole_count(const camber_features *features, size_t polyline) {

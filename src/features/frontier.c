@@ -1,7 +1,7 @@
 /* Walks outwards from the lines that touch a region.
  *
- * Input: lines, some of which touch the region, and later the lines that were asked for. Output: points to ask for. The
- * main idea is to rank lines:
+ * Input: lines, some of which touch the region, and later the lines that the frontier asked for. Output: the points
+ * whose lines the frontier asks for. The main idea is to rank lines:
  *
  *     rank 0    touches the region, or is merged with a line that does, so it is drawn. If a part of an area is in the
  *               region, all its rings have this rank
@@ -9,10 +9,10 @@
  *               points of the line of rank 0
  *     others    were read along with these, and have no influence
  *
- * All lines must be known at every point of a line of rank 0, because they affect its importance, and at the ends of a
- * line of rank 1, because they decide how it is merged. At points inside the region they are known already, so lines
- * that are wholly inside need nothing more. merge.c defines when lines are merged: if two ends of a class meet and no
- * third does. */
+ * At every point of a line of rank 0, all lines must be known, because they affect the importance of the point. At the
+ * ends of a line of rank 1, they must be known because they decide how the line is merged. At points inside the region
+ * they are known already, so lines that are wholly inside need nothing more. merge.c defines when lines are merged: if
+ * exactly two ends of a class meet. */
 #include "features/frontier.h"
 
 static const uint32_t NONE = UINT32_MAX;
@@ -23,7 +23,7 @@ typedef struct frontier_point {
     uint32_t next;  /* another point at the same node */
     uint32_t first; /* the first point at the node; it has the node's state */
     bool end;       /* an end of a line that may be merged */
-    bool known;     /* state of the node: it was asked for */
+    bool known;     /* state of the node: its lines were asked for */
 } frontier_point;
 
 /* A line that has points outside the region. */
@@ -31,22 +31,22 @@ typedef struct frontier_line {
     uint32_t class_index;
     uint32_t first_point, point_count;
     uint8_t rank;
-    bool waits; /* it is in the queue */
+    bool waits; /* the line is in the queue */
 } frontier_line;
 
 struct camber_frontier {
     camber_context *context;
     camber_features *features;
     bool merges;
-    size_t taken;    /* how many polylines of the set were taken in */
+    size_t taken;    /* how many polylines of the set were examined */
     size_t area_end; /* the polyline after the rings of the area that was examined last */
     bool area_touches;
     frontier_line *lines;
     size_t line_count, line_capacity;
     frontier_point *points;
     size_t point_count, point_capacity;
-    uint32_t *slots; /* a hash table of nodes: index of the first point + 1. Its size is a power of two, and at most
-                        half are in use */
+    uint32_t *slots; /* a hash table of nodes: the index of a node's first point + 1. Its size is a power of two, and at
+                        most half are in use */
     size_t slot_count;
     uint32_t *queue; /* a ring buffer of line_capacity entries */
     size_t queue_capacity, queued, queue_head;
@@ -146,7 +146,7 @@ static bool has_ends(const camber_features *features, size_t polyline, uint32_t 
     return false;
 }
 
-/* Whether the line touches the region, or all rings of its area together do. */
+/* Whether the line touches the region, or, if it is a ring, whether its area does. */
 static bool touches(camber_frontier *f, size_t polyline) {
     const camber_features *features = f->features;
     size_t next;

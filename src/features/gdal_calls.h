@@ -16,8 +16,8 @@ __attribute__((visibility("default"))) /* the module exports the symbol */
 #endif
 extern const camber_gdal_calls camber_gdal;
 
-/* Returns the table, either from the module, which it loads (src/load/), or as linked. Returns NULL if the module
- * cannot be loaded; *why then says why, or is NULL. */
+/* Returns the table: either the table in the module, which it loads (src/load/), or the one that is linked. Returns
+ * NULL if the module cannot be loaded; then *why is the reason, or NULL. */
 const camber_gdal_calls *camber_gdal_find(const char **why);
 
 #endif

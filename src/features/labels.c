@@ -1,8 +1,9 @@
-/* Features for symbol layers, beside those that are drawn.
+/* Adds features for symbol layers to a set, apart from the features that are drawn.
  *
- * Input: a set whose program draws labels. Output: the same lines, areas and points once more, under kinds of labels,
- * of classes that have the properties that symbol layers read. Main idea: labels come behind what is drawn of a file,
- * and are merged and weighed apart from it, so that a picture without its labels stays the same to the last bit. */
+ * Input: a set whose program draws labels. Output: the same lines, areas and points once more. They have the kinds of
+ * labels, and their classes have the properties that symbol layers read. The main idea: the labels of a file come after
+ * its drawn features, and their lines are merged and get their importance separately, so that the rest of
+ * the picture is the same with and without labels, to the last bit. */
 #include "features/features.h"
 
 #include <string.h>
@@ -28,13 +29,13 @@ size_t camber_features_find_labels(const camber_features *features, size_t first
     return first;
 }
 
-/* Features of labels while the others close up. */
+/* The features of labels, which are set aside while the others close up. */
 typedef struct aside {
     uint32_t *classes; /* feature_count */
     size_t feature_count;
     double *points;
     size_t point_count;
-    size_t *counts; /* polyline_count: of points */
+    size_t *counts; /* polyline_count: the number of points */
     uint32_t *features, *feature_counts;
     size_t polyline_count;
 } aside;
@@ -59,7 +60,7 @@ static bool make_room(const camber_features *f, size_t first_polyline, size_t fi
            (labels->feature_counts = camber_alloc(f->context, polylines, sizeof *labels->feature_counts));
 }
 
-/* Appends a polyline to those that have closed up. */
+/* Appends a polyline to the part of the set that has closed up. */
 static void put(camber_features *f, const double *points, size_t count, size_t feature, uint32_t counted) {
     const size_t p = f->polyline_count++, first = f->point_count;
     if (count)
@@ -79,7 +80,7 @@ static void set_aside(aside *labels, const double *points, size_t count, uint32_
     labels->feature_counts[p] = counted;
 }
 
-/* Closes the set up from the first polyline on: labels go aside, and then come last. */
+/* Sets the labels from first_polyline on aside, closes the gaps that they leave, and appends them at the end. */
 static void part(camber_features *f, size_t first_polyline, size_t first_feature, aside *labels) {
     const size_t feature_end = f->feature_count, polyline_end = f->polyline_count;
     size_t p = first_polyline, begin = f->offsets[first_polyline];

@@ -13,9 +13,9 @@ static inline double sum(double w, double a, double b, double c, double d) {
     return (a + b * w) + w * w * (c + d * w);
 }
 
-/* The natural logarithm of a value of at least 1: that of a power of two plus that of the remaining factor m, which is
- * between sqrt(1/2) and sqrt(2). log(m) = 2 atanh(z), z = (m - 1) / (m + 1). The terms of its series after z^19 are
- * below a double's precision. */
+/* The natural logarithm of a value of at least 1: the logarithm of a power of two plus the logarithm of the remaining
+ * factor m, which is between sqrt(1/2) and sqrt(2). log(m) = 2 atanh(z), z = (m - 1) / (m + 1). The terms of its series
+ * after z^19 are below a double's precision. */
 static inline double logarithm(double value) {
     const uint64_t root_half = UINT64_C(0x3fe6a09e667f3bcd), two_to_52 = UINT64_C(0x4330000000000000);
     uint64_t bits;
@@ -31,7 +31,7 @@ static inline double logarithm(double value) {
 }
 
 /* asinh(tan(lat)) = log((cos + sin) / (cos - sin)), with the sine and cosine of half the latitude. These are series up
- * to the 17th power. Only + - * / are used, so that a place has the same bits on all machines. */
+ * to the 17th power. Only + - * / are used, so that the result has the same bits on all machines. */
 static inline double project_latitude(double latitude) {
     const double half = fabs(latitude) * (pi / 360.0), w = half * half, w4 = w * w * (w * w);
     const double cosine =

@@ -17,15 +17,15 @@
 
 /* x is not wrapped: for a longitude of 190 degrees it is greater than 1. y is NaN at and beyond the poles. */
 void camber_mercator_project(double longitude, double latitude, double *x, double *y);
-/* Projects count places, all within the limits of latitude, to pairs x, y. Uses vector instructions, and gives the same
- * bits as the function above. */
+/* Projects count places, all within the limits of latitude, to pairs x, y. It uses vector instructions, and gives the
+ * same bits as camber_mercator_project. */
 void camber_mercator_project_many(const double *longitudes, const double *latitudes, size_t count, double *points);
 void camber_mercator_unproject(double x, double y, double *longitude, double *latitude);
 
 /* Converts metres of EPSG:3857, with y up, to world coordinates. */
 void camber_mercator_from_metres(double east_m, double north_m, double *x, double *y);
 
-/* Moves x by whole worlds into 0 to 1. 0 and 1, the two edges of the map, stay as they are. */
+/* Moves x by whole worlds into the range from 0 to 1. 0 and 1, the two edges of the map, stay as they are. */
 double camber_mercator_wrap(double x);
 
 #endif

@@ -1,9 +1,10 @@
-/* Merges lines of one class that meet end to end, as GEOS's LineMerge does: at points at which exactly two ends of the
- * class meet, the two lines become one. Lines of one class are drawn alike at every zoom, so only the caps at these
- * ends disappear. Fewer lines also have fewer ends, which simplification must keep.
+/* Merges lines of one class that meet end to end, as GEOS's LineMerge does: if exactly two ends of a class meet at a
+ * point, the two lines become one. Lines of one class are drawn alike at every zoom, so only the caps at these ends
+ * disappear. Fewer lines also have fewer ends, which simplification must keep.
  *
- * Lines from a style's own sources are merged only if they continue almost straight: two butt ends would leave a light
- * seam there, because each covers a part of the same pixels. If they bend, they keep their caps.
+ * Lines from a style's own sources are merged only if they continue almost straight. Without merging, two butt ends
+ * would leave a light seam, because each of them covers only a part of the same pixels. Lines that bend there keep
+ * their caps.
  */
 #include "features/chains.h"
 #include "features/features.h"
@@ -13,16 +14,16 @@
 
 /* The cosine of a turn by 40 degrees. */
 static const double STRAIGHT_COSINE = 0.766;
-/* At a node with more ends than this, no partners that continue straight are looked for. */
+/* If more ends than this meet at a node, the straight rule joins none of them. */
 enum { NODE_ENDS_MAX = 16 };
 
-/* Merges the lines from first_polyline on. */
+/* The state of merging the lines from first_polyline on. */
 typedef struct merger {
     camber_features *features;
     size_t first_polyline;
     size_t line_count;
     camber_geometry_kind kind; /* lines of this kind are merged; others stay */
-    uint32_t *partner;         /* by end: the end that it is joined to; CAMBER_NO_END: none */
+    uint32_t *partner;         /* by end: the end to which it is joined; CAMBER_NO_END: none */
     uint32_t *next;            /* used by the straight rule: another end at the same node, or CAMBER_NO_END */
     uint8_t *met;              /* the number of ends at the node whose first end this is, counted up to 3 */
     uint32_t *slots; /* hash table: the first end at a node, + 1; 0: free. Its size is a power of two, and at most half
@@ -171,7 +172,7 @@ static void find_straight_partners(merger *m) {
 
 /* ---- The merged lines ---- */
 
-/* The resulting lines: chains of several lines are copied, and lines that were not joined are moved within the arrays.
+/* The merged lines. Chains of several lines are copied; lines that were not joined are moved within the set's arrays.
  */
 typedef struct merged {
     double *points; /* the points of chains of several lines, one chain after the other */
@@ -341,8 +342,8 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     return merge(features, first_polyline, rule, CAMBER_GEOMETRY_LINE);
 }
 
-/* Merges the lines of labels, which come last: a street's pieces of one name become one line. They are not counted. An
- * icon that shows a line's direction, such as a one-way street's arrow, must not come onto a line that was turned. */
+/* Merges the lines of labels, which come last, so that the pieces of a street with one name become one line. They are
+ * not counted. If icons show the direction of lines, as the arrows of one-way streets do, no line may be turned. */
 static camber_status merge_labels(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
     const size_t counted = features->stats.merged_polylines;
     const camber_status status =

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* For each thing, the things that come directly before it in the lists. */
+/* By thing: the things that come directly before it in the lists. */
 typedef struct predecessors {
     size_t *first; /* count + 1 */
     uint32_t *things;
@@ -12,12 +12,12 @@ typedef struct sorter {
     predecessors before;
     size_t *next;    /* by thing: the first of its predecessors that was not visited yet */
     bool *begun;     /* by thing */
-    uint32_t *stack; /* the stack of things that wait for their predecessors */
+    uint32_t *stack; /* the things that wait for their predecessors */
     uint32_t *order;
     size_t done;
 } sorter;
 
-/* Whether another thing comes before the i-th item in its list. */
+/* Whether another thing comes directly before item i in its list. */
 static bool follows_in_list(const camber_order_desc *desc, size_t i) {
     return i > 0 && desc->lists[i] != CAMBER_LIST_END && desc->lists[i - 1] != CAMBER_LIST_END &&
            desc->lists[i] != desc->lists[i - 1];
@@ -36,8 +36,8 @@ static void list_predecessors(const camber_order_desc *desc, predecessors *befor
     before->first[0] = 0;
 }
 
-/* Appends the thing after everything that must come before it. If the lists contradict each other, so that it would
- * wait for itself, it is appended without waiting. */
+/* Appends the thing after everything that must come before it. If the lists contradict each other, so that a thing
+ * would wait for itself, it is appended without waiting. */
 static void append_thing(sorter *sort, uint32_t thing) {
     size_t depth = 0;
     sort->stack[depth++] = thing;

@@ -1,4 +1,4 @@
-/* Merges several lists of the same things into one order. It decides which line is drawn on top in two neighbouring
+/* Merges several lists of the same things into one order. This order decides which line is drawn on top in neighbouring
  * tiles. */
 #ifndef CAMBER_FEATURES_ORDER_H
 #define CAMBER_FEATURES_ORDER_H
@@ -13,9 +13,9 @@ typedef struct camber_order_desc {
     size_t item_count;
 } camber_order_desc;
 
-/* Writes all things to order (count entries). Each comes after those that precede it in a list; otherwise they are
- * sorted by number. If lists contradict each other, some pairs follow only one of them. Returns CAMBER_ERROR_MEMORY.
- * Cost: linear. */
+/* Writes all things to order (count entries). Each thing comes after those that precede it in a list; otherwise things
+ * are sorted by number. If two lists contradict each other about a pair of things, the pair is in the order of one of
+ * them. Returns CAMBER_ERROR_MEMORY. Cost: linear. */
 camber_status camber_order_merge(camber_context *context, const camber_order_desc *desc, uint32_t *order);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Keys that make a closed way an area unless their value is "no". The first one, "area", does so for a highway, too.
+/* Keys that make a closed way an area unless their value is "no". For a highway, only the first key, "area", does so.
  * NULL ends the list. */
 extern const char *const camber_osm_area_keys[];
 bool camber_osm_is_no(const char *value);

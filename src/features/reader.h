@@ -7,12 +7,12 @@
 typedef struct camber_reader {
     /* Whether a file is of this reader's format, judged by its name or its first bytes. */
     bool (*knows)(const char *path);
-    /* Whether the reader supports what is asked for: the layer, the filter. */
+    /* Whether the reader supports the request: its layer and its filter. */
     bool (*reads)(const camber_source_desc *desc);
-    /* Reads the file like camber_features_read. *declined becomes true if the file contains something that this reader
-     * leaves to the next one that knows the file. The set is then unchanged, and nothing is logged. */
+    /* Reads the file as camber_features_read does. *declined becomes true if the file contains something that this
+     * reader leaves to the next one that knows the file. The set is then unchanged, and nothing is logged. */
     camber_status (*read)(camber_features *features, const camber_source_desc *desc, bool *declined);
-    /* Fails, and says what to do, if the next reader would silently skip a part of the file. NULL: it would not. */
+    /* Fails, with advice, if the next reader would silently skip a part of the file. NULL: it never would. */
     camber_status (*leave)(camber_context *context, const camber_source_desc *desc);
     /* Returns the name of the n-th format, counted from 0, as GDAL spells it, or NULL after the last. */
     const char *(*format)(size_t n);

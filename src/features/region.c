@@ -1,8 +1,8 @@
-/* Tests what touches a region, and reduces a set of features to it.
+/* Tests whether lines and areas touch a region, and reduces a set of features to a region.
  *
  * Input: a set whose lines are merged and have importance. Output: the same set without lines outside the region, and
- * without classes that are no longer used. The result does not depend on how the file was read: with an index or as a
- * whole gives the same set. */
+ * without classes that are no longer used. The result is the same whether the file was read with an index or as a
+ * whole. */
 #include "features/region.h"
 
 #include "features/features.h"
@@ -34,7 +34,7 @@ bool camber_region_has_point(const camber_region *region, const double *point) {
     return has(&parts[0], point[0], point[1]) || (count > 1 && has(&parts[1], point[0], point[1]));
 }
 
-/* Narrows the part of a segment from *first to *last to the half plane distance + share * slope >= 0. */
+/* A part of a segment is from *first to *last. Narrows it to the half plane distance + share * slope >= 0. */
 static bool cut(double distance, double slope, double *first, double *last) {
     if (!(slope > 0.0 || slope < 0.0))
         return distance >= 0.0;
@@ -46,7 +46,7 @@ static bool cut(double distance, double slope, double *first, double *last) {
     return *first <= *last;
 }
 
-/* Liang-Barsky clipping. */
+/* Whether a segment touches the box, by Liang-Barsky clipping. */
 static bool segment_touches(const camber_region *box, const double *from, const double *to) {
     const double dx = to[0] - from[0], dy = to[1] - from[1];
     double first = 0.0, last = 1.0;
@@ -80,7 +80,7 @@ bool camber_region_touches(const camber_region *region, const double *points, si
 
 /* ---- Areas ---- */
 
-/* Rings are at most two worlds wide, and regions less than one. Anything wider is not on Earth. */
+/* Rings are at most two worlds wide, and regions are narrower than one world. A wider ring is not on Earth. */
 static const double MOST_WORLDS = 4.0;
 
 /* Returns how often a ring winds around a place that it does not touch. */
@@ -129,13 +129,13 @@ bool camber_region_meets_area(const camber_region *region, const double *points,
 
 typedef struct confining {
     camber_features *features;
-    uint32_t *feature_class; /* by feature that stays */
+    uint32_t *feature_class; /* by new index of a feature that stays */
     size_t polylines, points, feature_count;
-    uint32_t last_old, last; /* the feature of the last polyline that stayed, by its old index and by its new one */
+    uint32_t last_old, last; /* the old and the new index of the feature that has the last polyline that stayed */
 } confining;
 
-/* Moves a polyline down to those that stay. It counts for all the features that were merged into it, so each of them
- * gets a new index. */
+/* Moves a polyline down, to the end of those that stay. All features that were merged into it are counted with it, so
+ * each of them gets a new index. */
 static void keep_polyline(confining *self, size_t polyline) {
     camber_features *f = self->features;
     const size_t begin = f->offsets[polyline], count = f->offsets[polyline + 1] - begin;

@@ -17,8 +17,8 @@ size_t camber_region_parts(const camber_region *region, camber_region parts[2]);
 bool camber_region_has_point(const camber_region *region, const double *point);
 /* Whether a polyline shares a point with the region in any copy of the world. points: count pairs. */
 bool camber_region_touches(const camber_region *region, const double *points, size_t count);
-/* Whether a part of an area is in the region: either a ring touches it, or the rings together wind around all of it.
- * Rings may extend beyond the edges of the world. Ring i has the points [offsets[i], offsets[i + 1]). */
+/* Whether a part of an area is in the region: either a ring touches the region, or the rings together wind around all
+ * of it. Rings may extend beyond the edges of the world. Ring i has the points [offsets[i], offsets[i + 1]). */
 bool camber_region_meets_area(const camber_region *region, const double *points, const size_t *offsets,
                               size_t ring_count);
 

@@ -16,7 +16,7 @@ static int compare(const void *left, const void *right) {
     return a->feature < b->feature ? -1 : a->feature > b->feature;
 }
 
-/* Features and lines before the sort. */
+/* The features and lines before sorting. */
 typedef struct former {
     keyed_feature *features;
     size_t *first_polylines; /* by feature, and one more */

@@ -1,8 +1,8 @@
-/* Turns rings of areas into those that fill layers draw.
+/* Turns rings of areas into the form that fill layers draw.
  *
- * Input: a ring as in a file, open or closed, in either direction. Output: a closed ring whose direction shows
- * whether it is outer or a hole, or nothing if it has no area. Every repair is counted. Rings that cross themselves or
- * have spikes, and holes outside their area, are only counted and stay as they are. */
+ * Input: a ring from a file, open or closed, in either direction. Output: a closed ring whose direction shows whether
+ * it is an outer ring or a hole, or nothing if the ring has no area. Every repair is counted. Rings that cross
+ * themselves or have spikes, and holes outside their area, are only counted and stay as they are. */
 #include "features/rings.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ static bool same(const double *p, const double *q) {
     return p[0] == q[0] && p[1] == q[1];
 }
 
-/* Twice the area of the triangle of three points. */
+/* Returns twice the area of the triangle with these corners. */
 static double cross(const double *origin, const double *p, const double *q) {
     return (p[0] - origin[0]) * (q[1] - origin[1]) - (p[1] - origin[1]) * (q[0] - origin[0]);
 }
@@ -108,7 +108,7 @@ static bool edges_cross(const double *a, const double *c) {
     return cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0;
 }
 
-/* Whether an edge of a crosses an edge of b. Halves the longer span until both are short. */
+/* Whether an edge in span a crosses an edge in span b. Halves the longer span until both are short. */
 static bool spans_cross(const double *points, span a, span b, size_t *looks) {
     const bool apart = a.x1 < b.x0 || b.x1 < a.x0 || a.y1 < b.y0 || b.y1 < a.y0;
     if (apart || *looks == 0)
@@ -149,7 +149,7 @@ bool camber_ring_crosses(const double *points, size_t count) {
 /* ---- Spikes, and holes outside ---- */
 
 bool camber_ring_has_spike(const double *points, size_t count) {
-    static const double thin = 1e-7; /* as a fraction of its length */
+    static const double thin = 1e-7; /* as a fraction of the edge's length */
     size_t last = count - 1;
     while (last > 0 && same(points + 2 * last, points))
         last--;
@@ -186,7 +186,7 @@ static int winding_around(const double *points, size_t count, const double *at, 
 typedef struct area_rings {
     const camber_features *features;
     size_t first, end;
-    size_t looks; /* how many more edges may be examined; 0: give up */
+    size_t looks; /* how many more edges may be examined; at 0 the test gives up */
 } area_rings;
 
 static size_t ring_of(const camber_features *features, size_t polyline, const double **points) {
@@ -194,7 +194,7 @@ static size_t ring_of(const camber_features *features, size_t polyline, const do
     return features->offsets[polyline + 1] - features->offsets[polyline];
 }
 
-/* Whether a hole is outside the area: it looks at the first corner of the hole that no outer ring touches. */
+/* Whether a hole is outside the area. The first corner of the hole that no outer ring touches decides. */
 static bool is_outside(area_rings *area, size_t hole) {
     const double *corners, *points;
     const size_t corner_count = ring_of(area->features, hole, &corners);
@@ -223,7 +223,7 @@ static void count_ring(camber_features_stats *stats, area_rings *area, size_t po
     stats->outside_holes += camber_ring_area(points, count) < 0.0 && is_outside(area, polyline);
 }
 
-/* Counts defects of rings, which stay as they are. */
+/* Counts defects of rings. The rings stay as they are. */
 static void count_odd(camber_features *features, size_t first_polyline) {
     size_t end = first_polyline;
     for (size_t first = first_polyline; first < features->polyline_count; first = end) {
@@ -240,7 +240,7 @@ static void count_odd(camber_features *features, size_t first_polyline) {
 
 /* ---- The antimeridian ---- */
 
-/* Returns how far x moves from one point to the next along the short way. */
+/* Returns by how much x changes from one point to the next along the short way around the Earth. */
 static double short_way(double from, double to) {
     const bool along = (from == 0.0 && to == 1.0) || (from == 1.0 && to == 0.0);
     return fabs(to - from) <= 0.5 || along ? 0.0 : to < from ? 1.0 : -1.0;
@@ -273,7 +273,7 @@ size_t camber_ring_unroll(double *points, size_t count, bool *crosses) {
     const double first[2] = {points[0], points[1]};
     if (moved + short_way(before, first[0]) == 0.0)
         return count;
-    /* It goes around the Earth, so the pole on its side of the equator is inside. */
+    /* The ring goes around the Earth, so the pole on its side of the equator is inside. */
     const double pole = y / (double)count < 0.5 ? 0.0 : 1.0,
                  close[6] = {last[0], pole, first[0], pole, first[0], first[1]};
     memcpy(last + 2, close, sizeof close);

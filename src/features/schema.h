@@ -7,13 +7,13 @@
 
 typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
-    CAMBER_GEOMETRY_POLYGON, /* its outline is drawn */
+    CAMBER_GEOMETRY_POLYGON, /* an outline, which is drawn */
     CAMBER_GEOMETRY_AREA,    /* closed rings that are filled; all rings of a feature belong together (rings.h) */
     CAMBER_GEOMETRY_POINT,   /* lines of one point each */
-    /* Symbol layers label these: the same geometry once more, in classes of its own, since names would split those of
-     * lines and areas. Nothing else is drawn of it. */
+    /* Symbol layers label these kinds. They have the same geometry once more, in classes of their own, because names
+     * would split the classes of lines and areas. Only labels are drawn from them. */
     CAMBER_GEOMETRY_LABEL_LINE,
-    CAMBER_GEOMETRY_LABEL_AREA, /* rings as those of AREA */
+    CAMBER_GEOMETRY_LABEL_AREA, /* rings, as for AREA */
     CAMBER_GEOMETRY_LABEL_POINT,
     CAMBER_GEOMETRY_KINDS
 } camber_geometry_kind;
@@ -35,11 +35,11 @@ enum {
 static inline bool camber_geometry_is_label(camber_geometry_kind kind) {
     return CAMBER_KINDS_OF_LABELS >> kind & 1;
 }
-/* Whether its lines are the rings of an area. */
+/* Whether the lines of a kind are the rings of areas. */
 static inline bool camber_geometry_is_area(camber_geometry_kind kind) {
     return CAMBER_KINDS_OF_AREAS >> kind & 1;
 }
-/* The drawn kind that has the same geometry. */
+/* Returns the drawn kind that has the same geometry. */
 static inline camber_geometry_kind camber_geometry_shape(camber_geometry_kind kind) {
     return kind == CAMBER_GEOMETRY_LABEL_LINE    ? CAMBER_GEOMETRY_LINE
            : kind == CAMBER_GEOMETRY_LABEL_AREA  ? CAMBER_GEOMETRY_AREA
@@ -63,29 +63,29 @@ typedef struct camber_feature_view {
     const camber_value *values; /* property_count, in the order of the schema's properties */
     const char *geometry_type;  /* "Point", "LineString" or "Polygon" */
     camber_value id;            /* null if there is none, or if the style does not read it */
-    const camber_value *all;    /* an object of all properties, if the style reads them. NULL: none */
+    const camber_value *all;    /* an object with all properties, if the style needs them. NULL: none */
 } camber_feature_view;
 
-/* The source of features from any input file, which no layer names. */
+/* The source of features from an input file, which no layer of the style names. */
 #define CAMBER_NO_SOURCE UINT32_MAX
 
 /* The kinds of features for which a property is read, CAMBER_KIND_*. */
 typedef struct camber_property_readers {
-    unsigned kinds;       /* by layers that accept any source layer */
-    unsigned named_kinds; /* by layers that name a source layer */
+    unsigned kinds;       /* kinds for which layers that accept any source layer read it */
+    unsigned named_kinds; /* kinds for which layers that name a source layer read it */
 } camber_property_readers;
 
 typedef struct camber_schema {
-    char **properties; /* the feature properties that expressions read, each once */
+    char **properties; /* the names of the feature properties that expressions read, each once */
     size_t property_count;
-    /* property_count: the features for which each is read. No kinds if only a source's filter reads it. NULL: all
-     * properties of all features. */
+    /* property_count: the features for which each property is read. It has no kinds if only a source's filter reads the
+     * property. NULL: all properties of all features. */
     camber_property_readers *property_readers;
-    /* The source layers that style layers name, each once; first those of visible layers other than symbol
-     * layers. The style layers own the strings. */
+    /* The source layers that style layers name, each once. Those that visible layers other than symbol layers name come
+     * first. The style layers own the strings. */
     const char **source_layers;
     size_t source_layer_count, drawn_source_layer_count;
-    size_t label_source_layer_count; /* those after the drawn ones, which visible symbol layers name */
+    size_t label_source_layer_count; /* how many more source layers, after these, visible symbol layers name */
     bool wants_id;                   /* an expression reads the feature's id */
     bool wants_all_properties;       /* an expression reads properties without naming them */
     bool directed;        /* a line layer depends on the direction of lines: dashes, offsets, gradients, patterns */
@@ -94,21 +94,22 @@ typedef struct camber_schema {
                              layer with an outline colour, or as corners by a circle layer */
     bool wants_areas;     /* a fill layer is drawn, so polygons are also read as rings */
     bool wants_points;    /* a circle layer whose filter accepts points is drawn */
-    /* A symbol layer whose filter accepts these is drawn. */
+    /* For each: a symbol layer is drawn whose filter accepts such features. */
     bool wants_label_lines, wants_label_areas, wants_label_points;
-    /* A plain layer is drawn (for areas or points: one that accepts them), so data without a schema is read for it. */
+    /* A plain layer is drawn (for areas or points: a plain layer that accepts them), so data without a schema is read
+     * for it. */
     bool wants_plain, wants_plain_areas, wants_plain_points;
-    /* Whether a layer other than the plain ones draws such features of this source layer at any zoom. For a label's
-     * kind: whether a symbol layer takes them. NULL: none does. */
+    /* Whether a layer other than the plain ones draws such a feature of this source layer at any zoom. For a label's
+     * kind: whether a symbol layer takes the feature. NULL: no layer does. */
     bool (*takes)(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature);
 } camber_schema;
 
 /* Whether a layer of the style names this source layer, so that the style knows what is in it. */
 bool camber_schema_names_layer(const camber_schema *schema, const char *source_layer);
-/* Whether layers other than symbol layers read a property, or the filter of a source does. */
+/* Whether a layer other than symbol layers, or the filter of a source, reads a property. */
 bool camber_schema_draws_property(const camber_schema *schema, size_t property);
-/* Whether visible symbol layers name it, and no other visible layers do. */
+/* Whether a visible symbol layer names this source layer, and no other visible layer does. */
 bool camber_schema_only_labels_layer(const camber_schema *schema, const char *source_layer);
 
 #endif

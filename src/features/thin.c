@@ -1,8 +1,8 @@
 /* Frees memory that a set of features no longer needs.
  *
  * Input: a set whose lines are merged and have importance. Output: the same lines with fewer points, in less memory.
- * The main idea: a picture of a large country leaves out most points, because many of them fall into each pixel. Points
- * that no further picture needs are dropped: before the network of a single view is made, and between the zooms of a
+ * The main idea: a picture of a large country leaves out most points, because each pixel contains many of them. Points
+ * that no later picture needs are dropped: before the network of a single view is made, and between the zooms of a
  * pyramid. */
 #include "features/features.h"
 

@@ -1,9 +1,9 @@
 /* Cuts rings of areas to their vector tiles.
  *
  * Input: a ring that includes the buffer around its tile. Output: the part of it inside the tile, closed along the
- * tile's sides, by Sutherland-Hodgman clipping. The main idea: the neighbour's piece ends on the same side of the tile
- * and runs along it in the other direction. So the edges along the side cancel each other, and no seam is drawn,
- * however the buffers overlap.
+ * tile's sides, by Sutherland-Hodgman clipping. The main idea: the piece in the neighbouring tile ends on the same side
+ * of the tile and runs along it in the other direction. So the edges along the side cancel each other, and no seam is
+ * drawn, however the buffers overlap.
  *
  *         tile A    |    tile B
  *     a ----------->|------------> b
@@ -17,7 +17,7 @@
 
 enum { SIDES = 4 };
 
-/* The sides cut one after the other: a point that passes one side is handed to the next. */
+/* One side of the tile. The sides cut one after the other: each hands the points that pass it to the next. */
 typedef struct side {
     double first[2], last[2];
     bool begun;

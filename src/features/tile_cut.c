@@ -12,7 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Coordinates were converted to metres and back; those this close to a multiple of 1/16 unit are rounded to it. */
+/* Coordinates were converted to metres and back. If one is this close to a multiple of 1/16 unit, it is rounded to that
+ * multiple. */
 static const double SNAP = 0.01 / 16;
 
 /* ---- Features: one record for all lines with the same id ---- */
@@ -94,7 +95,7 @@ static bool along_border(const camber_tile_box *box, const double *p, const doub
 }
 
 /* Clips the segment p q to the box (Liang-Barsky) and puts the new ends exactly on the border. Returns false if at most
- * one point of it is inside. */
+ * one point of the segment is inside. */
 static bool clip_segment(const camber_tile_box *box, const double *p, const double *q, double ends[4], bool cut[2]) {
     double t[2] = {0, 1};
     int axis_of[2] = {-1, -1};
@@ -188,7 +189,8 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
     return status;
 }
 
-/* A ring that is cut at the border becomes two lines that meet at the ring's first point. This makes them one line. */
+/* A ring that is cut at the border becomes two lines that meet at the ring's first point. This function makes them one
+ * line. */
 static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_line, const double *start) {
     if (stitcher->line_count < first_line + 2)
         return CAMBER_OK;
@@ -230,7 +232,7 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
         cut->done += cut->progress ? segment_length(points + 2 * (i - 1)) : 0;
     }
     if (!moves && inside(&cut->box, points)) {
-        /* All points are equal: it is a dot. */
+        /* All points are equal, so the line is a dot. */
         status = open_line(cut, points, false, false);
         for (size_t i = 1; i < count && status == CAMBER_OK; i++)
             status = camber_tile_stitcher_add_point(stitcher, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
@@ -242,8 +244,7 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
     return status;
 }
 
-/* Returns the box to which lines are cut. At open sides, where the buffer is kept, it is one tile larger, but not for
- * areas. */
+/* Returns the box to which lines are cut. For lines, the box is one tile larger at open sides, to keep the buffer. */
 static camber_tile_box box_of(const camber_tile_feature *feature) {
     const double column = feature->column, row = feature->row;
     const unsigned open = feature->area ? 0 : feature->open_sides;

@@ -1,4 +1,4 @@
-/* Joins the lines of features that were cut by vector tiles.
+/* Joins the lines of features that vector tiles have cut.
  *
  * Ends on borders are hashed by feature and position; the nearest end in another tile becomes the partner. If both ends
  * were made by cutting, they are not points of the feature and are dropped, because the points before and after them
@@ -11,17 +11,18 @@
 #include <math.h>
 #include <string.h>
 
-/* How far apart partners may be, in units. A tile's lines are rounded to its grid, mostly of 2048 or 4096 units. A line
- * that is cut at the buffer's edge is rounded once more, which moves the point at which it crosses the border. */
+/* The maximum distance between partners, in units. A tile's lines are rounded to its grid, which mostly has 2048 or
+ * 4096 steps. A line that is cut at the buffer's edge is rounded once more, which moves the point at which it crosses
+ * the border. */
 static const double REACH = 4;
 
-/* The same for lines with an id, which may cross the border at a flat angle: 1/128 of a tile. */
+/* The maximum distance for lines with an id, which may cross the border at a flat angle: 1/128 of a tile. */
 static const double ID_REACH = 32;
 
 /* No known map uses a grid coarser than 1/64 of a tile. */
 static const double MOST_REACH = 32;
 
-/* Partners that match exactly are joined first, so that two lines that cross the border side by side stay apart. */
+/* Partners that match exactly are joined first, so that two lines that cross the border side by side stay separate. */
 static const double EXACT = 0.01;
 
 /* How many candidates are compared in a cell. Only malicious files have more in one cell. */
@@ -38,7 +39,7 @@ typedef struct joiner {
 } joiner;
 
 typedef struct join_pass {
-    bool by_id; /* false: match by class. The lines that are left have no id, or one that is valid in their tile only */
+    bool by_id; /* false: match by class. The lines that are left have no id, or one that is valid only in their tile */
     double reach;
     bool directed;
 } join_pass;
@@ -129,7 +130,7 @@ static void find_partners(joiner *join, const join_pass *pass) {
     }
 }
 
-/* Lines along a border are in both neighbouring tiles; keeps one of each pair. Reuses the lists, with lines as entries.
+/* Lines along a border are in both neighbouring tiles; keeps one line of each pair. Reuses the lists of ends for lines.
  */
 static void drop_repeated_border_lines(joiner *join) {
     camber_tile_stitcher *stitcher = join->stitcher;
@@ -160,8 +161,9 @@ static void drop_repeated_border_lines(joiner *join) {
     }
 }
 
-/* Drops crumbs. If a line passes near the corner of four tiles, one tile may have only a tiny piece between two cuts,
- * whose ends are both within reach of the neighbours. Without this crumb the neighbours find each other. */
+/* Drops crumbs. If a line passes near the corner of four tiles, one tile may have only a tiny piece of it between two
+ * cuts, and both ends of the piece are within reach of the neighbours' ends. Without this crumb, the neighbours' ends
+ * find each other. */
 static void drop_crumbs(const joiner *join, double reach) {
     camber_tile_stitcher *stitcher = join->stitcher;
     for (uint32_t i = 0; i < stitcher->line_count; i++) {
@@ -174,8 +176,8 @@ static void drop_crumbs(const joiner *join, double reach) {
 
 /* ---- Chains ---- */
 
-/* Whether the point at which a line is entered is left out. At a joint one point remains, or none if cutting made both.
- */
+/* Whether the point at which a line is entered is left out. At a joint, one of the two points remains, or none if
+ * cutting made both. */
 static bool skips_entry(const joiner *join, uint32_t enter) {
     const camber_cut_line *lines = join->stitcher->lines;
     const uint32_t leave = join->partner[enter];
@@ -215,7 +217,7 @@ static bool gather_points(const joiner *join, uint32_t start, size_t *count, uin
 
 /* ---- Order of drawing ---- */
 
-/* Chains sorted by key. order: the keys in the order of drawing. */
+/* Chains, sorted by key, and their order of drawing. order: the keys in that order. */
 typedef struct chain_list {
     camber_chain *chains;
     size_t count;
@@ -242,9 +244,9 @@ static bool same_list(const camber_tile_stitcher *stitcher, const camber_feature
            features->classes[classes[0]].layer == features->classes[classes[1]].layer;
 }
 
-/* Decides the order of drawing, so that a line that is on top in one tile is on top in all. The order of features
- * within a tile is the author's, usually with important roads last. A road that begins in the first tile must not be
- * drawn below everything in the second. */
+/* Decides the order of drawing, so that a line that is on top in one tile is on top in all tiles. The order of features
+ * within a tile is the author's, usually with important roads last. But a road that begins in the first tile must not
+ * be drawn below everything in the second tile. */
 static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
     const camber_tile_stitcher *stitcher = join->stitcher;
     camber_context *context = stitcher->context;

@@ -13,8 +13,8 @@ enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER
 typedef struct camber_tile_feature {
     uint32_t column, row; /* the tile, from the north-west; columns may be in the next copy of the world */
     uint32_t class_index;
-    bool outline; /* it is a polygon's: lines along the border were made by the tile, and are left out */
-    bool area;    /* its lines are rings as described in rings.h; each is cut to the tile, at open sides, too */
+    bool outline; /* outlines of polygons: lines along the border are left out, because clipping made them */
+    bool area;    /* its lines are rings as described in rings.h; each is cut to the tile, even at open sides */
     bool has_id;
     uint64_t id; /* equal in all tiles */
     bool has_progress;
@@ -29,29 +29,30 @@ typedef struct camber_tile_lines {
     size_t line_count;
 } camber_tile_lines;
 
-/* zoom: 0 to 30. */
+/* Creates a stitcher for tiles of one zoom, 0 to 30. */
 camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher);
 void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher);
-/* Cuts the lines at the tile's border and keeps the parts inside. */
+/* Cuts the lines of a feature at the tile's border and keeps the parts inside. */
 camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
                                        const camber_tile_lines *lines);
 /* Gives points of areas on the borders of tiles the highest importance, so that simplification keeps them and the
- * pieces still meet. For the polylines from first_polyline on, after their importance was computed. */
+ * pieces still meet. Does so for the polylines from first_polyline on, whose importance must have been computed. */
 void camber_features_pin_borders(camber_features *features, size_t first_polyline, int zoom);
-/* Joins the lines and adds them to the set. If the style depends on directions, an end is joined only to a start. */
+/* Joins the lines and adds them to the set. If the style depends on the direction of lines, the end of a line is joined
+ * only to the start of another. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
-/* Does so for labels, for which directions count only if icons show them. Pieces that are joined are not counted. */
+/* Does the same for labels. Directions count only if icons show them. Joined pieces are not counted. */
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features);
 
 /* ---- Shared by the files of the stitcher ---- */
 
-/* Coordinates of cut lines are in units of 1/4096 of a tile, from the world's north-west corner. Tiles are quantised to
- * this, or to half or double as much, and a double holds such numbers exactly at all zooms. */
+/* Coordinates of cut lines are in units of 1/4096 of a tile, from the world's north-west corner. Tiles are rounded to
+ * steps of one unit, or of half or double that size. A double represents such numbers exactly at all zooms. */
 #define CAMBER_TILE_UNITS 4096.0
 
 /* A line, or a ring of an area. */
 typedef struct camber_cut_line {
-    size_t first, count; /* its points; count 0: the line was removed */
+    size_t first, count; /* the line's points; count 0: the line was removed */
     uint32_t feature;    /* index into features */
     uint32_t column, row;
     bool cut[2];       /* the first or last point was made by cutting, and is not a point of the feature */
@@ -64,7 +65,7 @@ typedef struct camber_cut_feature {
     uint64_t id;
     uint32_t class_index;
     bool has_id;
-    uint32_t next; /* the next one with the same hash, + 1 */
+    uint32_t next; /* the next feature with the same hash, + 1 */
 } camber_cut_feature;
 
 struct camber_tile_stitcher {
@@ -76,7 +77,7 @@ struct camber_tile_stitcher {
     size_t point_count, point_capacity;
     camber_cut_line *lines; /* fewer than 2^31 */
     size_t line_count, line_capacity;
-    camber_cut_feature *features; /* one for all lines with the same id and class */
+    camber_cut_feature *features; /* one entry for all lines with the same id and class */
     size_t feature_count, feature_capacity;
     uint32_t *slots; /* hash table of features with an id, + 1; slot_count is a power of two */
     size_t slot_count;

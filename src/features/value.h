@@ -5,7 +5,7 @@
 #include "base/base.h"
 
 typedef enum camber_value_type {
-    CAMBER_VALUE_NULL = 0, /* also if the feature does not have the property */
+    CAMBER_VALUE_NULL = 0, /* null, or the feature does not have the property */
     CAMBER_VALUE_BOOL,
     CAMBER_VALUE_NUMBER,
     CAMBER_VALUE_STRING,
@@ -22,8 +22,8 @@ typedef struct camber_text_section camber_text_section; /* style/section.h */
 /* A value of an expression or of a property. It does not own the memory that it points to. */
 struct camber_value {
     camber_value_type type;
-    uint32_t count; /* number of an array's items, an object's members or a formatted text's sections */
-    bool boolean;   /* for a null: the feature has the property, and it is null; for a string: it names an image */
+    uint32_t count; /* the number of items in an array, members in an object or sections in a formatted text */
+    bool boolean;   /* for a null: the feature has the property, but it is null; for a string: it names an image */
     double number;
     union {
         const char *string; /* UTF-8 */
@@ -36,7 +36,7 @@ struct camber_value {
 
 struct camber_member {
     const char *key;
-    uint32_t position; /* position in the document, which texts keep */
+    uint32_t position; /* the member's position in the document, which the order in texts follows */
     camber_value value;
 };
 

@@ -1,4 +1,4 @@
-/* Makes lines of points as they are read.
+/* Makes lines from points as they are read.
  *
  * Input: points in degrees or metres, and the ends of lines. Output: lines in world coordinates. Between two points a
  * line goes the short way around the Earth, so it is split if that way crosses the antimeridian. Between two points on
@@ -19,7 +19,8 @@ void camber_world_lines_begin(camber_world_lines *lines) {
     lines->open = lines->begun_by_cut = false;
 }
 
-/* A line adds its own points, two more for each crossing of the antimeridian, and at most as many lines as points. */
+/* A line keeps its own points, gets two more at each crossing of the antimeridian, and becomes at most as many lines as
+ * it has points. */
 size_t camber_world_lines_most_points(size_t point_count) {
     return 3 * point_count;
 }
@@ -84,8 +85,9 @@ static void cross_antimeridian(camber_world_lines *lines, double x, double y) {
     lines->antimeridian_splits++;
 }
 
-/* Whether the way from the last point to x is as long as the world is wide. But a line that arrived at the antimeridian
- * from inside the world, such as a ship's track, continues beyond it: then the two points are the same place. */
+/* Whether the way from the last point to x is as long as the world is wide. However, if a line arrived at the
+ * antimeridian from inside the world, such as a ship's track, it continues beyond; then the two points are the same
+ * place. */
 static bool goes_across(const camber_world_lines *lines, double x) {
     const double before = lines->point_count - lines->first > 1 ? lines->points[2 * lines->point_count - 4] : lines->x;
     const double came = fabs(lines->x - before);

@@ -7,7 +7,7 @@
 
 typedef struct camber_world_lines {
     camber_context *context;
-    /* for tiles: coordinates stay as they are, even beyond the world's edges; they are cut later */
+    /* for tiles: coordinates stay as they are, even beyond the world's edges, because the stitcher cuts them later */
     bool whole;
     bool uncut;     /* for areas: lines are not split at the antimeridian */
     double *points; /* pairs x, y */
@@ -18,7 +18,7 @@ typedef struct camber_world_lines {
     /* The open line. A single point between two cuts at the antimeridian is on it and is left out, because its
      * neighbours draw it. */
     size_t first; /* its first point */
-    bool open;    /* it has at least one point */
+    bool open;    /* the line has at least one point */
     bool begun_by_cut;
     double x, y; /* the last point */
 
@@ -26,7 +26,7 @@ typedef struct camber_world_lines {
     size_t clamped_points, antimeridian_splits;
 } camber_world_lines;
 
-/* Forgets the lines, and keeps totals and memory. */
+/* Removes all lines, and keeps the totals and the memory. */
 void camber_world_lines_begin(camber_world_lines *lines);
 /* Makes room for a line of point_count points. */
 bool camber_world_lines_reserve(camber_world_lines *lines, size_t point_count);
@@ -35,7 +35,7 @@ size_t camber_world_lines_most_points(size_t point_count);
 size_t camber_world_lines_most_ends(size_t point_count);
 /* Adds a point to the open line, or opens one. The caller has reserved room. */
 void camber_world_lines_add_degrees(camber_world_lines *lines, double longitude, double latitude);
-/* The same for points that camber_world_points converted. */
+/* Does the same with points that camber_world_points converted. */
 void camber_world_lines_add_points(camber_world_lines *lines, const double *points, size_t count);
 void camber_world_lines_add_metres(camber_world_lines *lines, double east, double north);
 /* Ends the open line, if there is one. The next point opens another. */

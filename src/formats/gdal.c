@@ -1,6 +1,6 @@
-/* Passes files to GDAL, which is loaded when the first of them is read, because it brings a hundred libraries with it.
- * Loading them takes longer than drawing a small map, and it slows down every driver that is loaded later, because the
- * loader searches them for its symbols. */
+/* Passes files to GDAL, which is loaded when the first of these files is read, because GDAL needs a hundred libraries.
+ * Loading them takes longer than drawing a small map. It also slows down every driver that is loaded later, because the
+ * loader searches them all for the driver's symbols. */
 #include "formats/gdal.h"
 #include "features/features.h"
 #include "features/gdal_calls.h"

@@ -1,4 +1,4 @@
-/* The last reader: GDAL, for all files that no other reader takes. */
+/* The last reader. It passes to GDAL all files that no other reader takes. */
 #ifndef CAMBER_FORMATS_GDAL_H
 #define CAMBER_FORMATS_GDAL_H
 

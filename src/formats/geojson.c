@@ -1,7 +1,8 @@
 /* Reads a GeoJSON source of a style into a set of features.
  *
- * Input: a JSON document and the source's filter. Output: lines, outlines, areas, points, classes, ids. Damage is
- * counted and is not fatal: a line is split at points that are not valid, and the readable parts of a feature are kept.
+ * Input: a JSON document and the source's filter. Output: features with lines, outlines, areas or points, their classes
+ * and their ids. Damage is counted and is not fatal: a line is split at points that are not valid, and the readable
+ * parts of a feature are kept.
  */
 #include "formats/geojson.h"
 #include "features/mercator.h"
@@ -22,7 +23,7 @@ typedef struct reader {
     camber_context *context;
     camber_features *features;
     const camber_geojson_desc *desc;
-    camber_geojson_stats *stats; /* of what is being read: those of the description, or these */
+    camber_geojson_stats *stats; /* counts for the geometry that is being read: the caller's, or label_stats */
     camber_geojson_stats label_stats;
     camber_features_stats label_rings;
     const json_t *promote_id;
@@ -30,14 +31,14 @@ typedef struct reader {
     unsigned kinds; /* CAMBER_KIND_*: those that are read */
     camber_rings rings;
     camber_value *values;
-    double *points; /* the points of one line */
+    double *points; /* the points of the line that is being read */
     size_t capacity;
 
     /* The feature being read. */
     size_t index;
     bool in_collection;
     const char *damage;
-    bool left_out, added; /* added: of the kind that is being read */
+    bool left_out, added; /* added: the feature was added with the kind that is being read */
     camber_geometry_kind kind;
     uint32_t class_index;
 } reader;
@@ -73,7 +74,7 @@ static camber_status read_value(reader *self, const json_t *json, camber_value *
     return CAMBER_OK;
 }
 
-/* Reads an id. As in other engines, a text that is a number counts as a number. */
+/* Reads an id. As in other engines, a text that contains a number counts as a number. */
 static camber_status read_id(reader *self, const json_t *feature, const json_t *properties, camber_value *id) {
     const json_t *json = json_object_get(feature, "id");
     if (self->promote_id)
@@ -94,7 +95,7 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
     return read_value(self, json, id);
 }
 
-/* Finds the feature's class for this kind. *drawn: the source's filter accepts it. */
+/* Finds the feature's class for the current kind. *drawn: the source's filter accepts the feature. */
 static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
     const camber_schema *schema = self->features->schema;
     const json_t *properties = json_object_get(feature, "properties");
@@ -187,8 +188,8 @@ static camber_status add_parts(reader *self, size_t count) {
     return status;
 }
 
-/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole counter-clockwise.
- */
+/* Turns a ring so that an outline goes clockwise on the map, with its inside to the right, and a hole
+ * counter-clockwise. */
 static void orient_ring(double *points, size_t count, bool hole) {
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -200,7 +201,8 @@ static void orient_ring(double *points, size_t count, bool hole) {
         camber_ring_turn(points, count);
 }
 
-/* Adds the ring that was read, to be filled. If outlines are read too, they already count its invalid points. */
+/* Adds the ring that was read as a part of an area. If outlines are read, too, its invalid points were already counted
+ * with the outline. */
 static camber_status add_ring(reader *self, size_t count, bool hole) {
     for (size_t i = 0; i < count && !(self->kinds & CAMBER_KIND_POLYGON); i++)
         self->stats->invalid_points += isnan(self->points[2 * i]) != 0;
@@ -251,8 +253,8 @@ static camber_status read_point(reader *self, const json_t *json) {
     return CAMBER_OK;
 }
 
-/* depth: how deep the lines or points are nested in the coordinates. hole: lines after the first of a polygon are
- * holes. */
+/* Reads lines or points. depth: how deep they are nested in the coordinates. hole: the lines after the first are holes
+ * of a polygon. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool hole) {
     if (!json_is_array(json)) {
         note_damage(self, "coordinates that are not an array");
@@ -297,7 +299,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, int dep
     return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, false);
 }
 
-/* Whether a geometry contains lines, polygons or points at all. */
+/* Whether a geometry, or any part of a collection, is of this kind. */
 static bool has_kind(const json_t *geometry, camber_geometry_kind kind, int depth) {
     const char *type = json_string_value(json_object_get(geometry, "type"));
     if (!type)
@@ -325,7 +327,8 @@ static void end_feature(reader *self) {
         snprintf(stats->damage, sizeof stats->damage, "%s", self->damage);
 }
 
-/* Reads the feature's geometry of a kind, or for symbol layers, if one takes it: that has counts of its own. */
+/* Reads the feature's geometry of the current kind. If the kind is a label's, a symbol layer must take the feature, and
+ * its defects are counted separately. */
 static camber_status read_kind(reader *self, const json_t *feature, const json_t *geometry) {
     const camber_geometry_kind kind = self->kind;
     const bool label = camber_geometry_is_label(kind);
@@ -365,7 +368,7 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
     }
     self->kind = CAMBER_GEOMETRY_LINE;
     if (!any)
-        status = read_geometry(self, geometry, 0); /* which reports the unknown type */
+        status = read_geometry(self, geometry, 0); /* this reports the unknown type */
     self->left_out |= (unread & CAMBER_KIND_LINE && !(read & CAMBER_KIND_LABEL_LINE)) ||
                       (unread & CAMBER_KIND_POINT && !(read & CAMBER_KIND_LABEL_POINT)) ||
                       (unread & POLYGONS && !(read & POLYGONS));
@@ -408,7 +411,7 @@ camber_status camber_geojson_read(camber_features *features, const camber_geojso
     *stats = self.label_stats = (camber_geojson_stats){.bounds = {1, 1, 0, 0}};
     self.values = camber_alloc(features->context, features->schema->property_count, sizeof *self.values);
     const camber_status status = self.values ? read_root(&self) : CAMBER_ERROR_MEMORY;
-    if (stats->bounds[0] > stats->bounds[2]) /* labels are all that it has */
+    if (stats->bounds[0] > stats->bounds[2]) /* it has only labels */
         memcpy(stats->bounds, self.label_stats.bounds, sizeof stats->bounds);
     camber_free(features->context, self.points);
     camber_free(features->context, self.values);

@@ -5,11 +5,11 @@
 #include "features/features.h"
 
 typedef struct camber_geojson_desc {
-    const char *what;         /* the source's name in messages */
+    const char *what;         /* the source's name, for messages */
     const json_t *root;       /* the document */
     const json_t *promote_id; /* the name of the property to use as id, a string. NULL: none */
     bool generates_ids;       /* a feature's id is its index in the document */
-    unsigned kinds;           /* CAMBER_KIND_*: which kinds are drawn. 0: all that the style reads */
+    unsigned kinds;           /* CAMBER_KIND_*: the kinds that are drawn. 0: all that the style reads */
     bool (*matches)(const void *user,
                     const camber_feature_view *feature); /* the source's filter. NULL: all features pass */
     const void *user;
@@ -20,7 +20,7 @@ typedef struct camber_geojson_stats {
     size_t invalid_points;   /* points that are not numbers; lines are split there */
     size_t damaged_features; /* features of which only the readable parts are kept */
     char damage[160];        /* the first damage: its JSON pointer and cause */
-    double bounds[4];        /* x0, y0, x1, y1 of the lines in world coordinates; x0 > x1: no lines */
+    double bounds[4]; /* x0, y0, x1, y1: the box around the lines in world coordinates; x0 > x1: there are none */
 } camber_geojson_stats;
 
 /* Adds the lines, outlines and areas to the set, with features->source as their source. Returns CAMBER_ERROR_INPUT (not

@@ -1,8 +1,7 @@
 /* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
  *
- * Input: the decompressed bytes of one tile after the other. Output: features. Their lines and rings go to the
- * stitcher, which cuts them at the tiles' borders. protobuf-c unpacks messages into a pool of limited size. Damage is
- * counted.
+ * Input: the decompressed bytes of one tile after the other. Output: features. The stitcher gets their lines and rings,
+ * and cuts them at the tiles' borders. protobuf-c unpacks messages into a pool of limited size. Damage is counted.
  */
 #include "formats/mvt.h"
 #include "features/rings.h"
@@ -20,7 +19,8 @@ static const size_t LARGEST_TILE_BYTES = (size_t)256 << 20;
 /* PEEKED_FEATURES: how many features are examined to find out whether a layer has lines. */
 enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 
-/* Properties that identify a feature in several tiles, apart from the format's own id: OSM's, a common one, TIGER's. */
+/* Properties that identify a feature in several tiles, apart from the format's own id. They are OSM's, a common one,
+ * and TIGER's. */
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
@@ -36,7 +36,7 @@ struct camber_mvt {
     camber_mvt_stats stats;
     camber_pool pool;
     uint32_t *sorted;     /* the style's properties, sorted by name */
-    camber_value *values; /* of one feature */
+    camber_value *values; /* the property values of one feature */
     camber_mvt_geometry geometry;
     camber_mvt_layer *layers;
     size_t layer_count, layer_capacity;
@@ -51,7 +51,7 @@ struct camber_mvt {
     camber_value *known;      /* layer->n_values */
     bool *is_known;
     uint32_t ids[ID_KEYS], promoted, clips[2]; /* indices of keys */
-    bool unsorted;                             /* the layer has no schema that the style knows */
+    bool unsorted;                             /* the style does not know the layer's schema */
 };
 
 #define NONE UINT32_MAX
@@ -62,7 +62,8 @@ static void note_damage(camber_mvt *mvt, const char *cause) {
                  mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
-/* Returns the status for a message that could not be unpacked: it is damaged, or the pool is exhausted. */
+/* Returns the status for a message that could not be unpacked, because it is damaged or because the pool is
+ * exhausted. */
 static camber_status judge_failure(camber_mvt *mvt, const char *cause) {
     if (mvt->pool.out_of_memory)
         return CAMBER_ERROR_MEMORY;
@@ -219,7 +220,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
             continue;
         status = read_value(mvt, feature->tags[i + 1], &value);
         const ProtobufCBinaryData key = mvt->layer->keys[feature->tags[i]];
-        /* jansson refuses a key that is not UTF-8, and it is left out. */
+        /* jansson refuses a key that is not UTF-8, so such a property is left out. */
         if (status == CAMBER_OK)
             json_object_setn_new(object, (const char *)key.data, key.len, to_json(&value));
     }
@@ -277,7 +278,8 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
-/* Whether a point belongs to this tile. A point in its buffer is in the next tile, too, unless that is not read. */
+/* Whether a point belongs to this tile. A point in the tile's buffer belongs to the neighbouring tile, unless that tile
+ * is not read. */
 static bool is_own(const camber_tile_address *address, const double *point) {
     const double side = ldexp(1.0, address->zoom);
     const double column = floor(point[0] * side) - address->column, row = floor(point[1] * side) - address->row;
@@ -286,7 +288,7 @@ static bool is_own(const camber_tile_address *address, const double *point) {
     return !(beyond & ~address->open_sides);
 }
 
-/* Leaves only the tile's own points in the geometry. */
+/* Drops the points that belong to other tiles from the geometry. */
 static void keep_own_points(camber_mvt *mvt) {
     camber_mvt_geometry *geometry = &mvt->geometry;
     size_t kept = 0;
@@ -318,7 +320,7 @@ static camber_status add_points(camber_mvt *mvt, uint32_t class_index) {
     return status;
 }
 
-/* Finds the class of a feature, and what the stitcher knows of it. */
+/* Finds the class of a feature, and describes the feature to the stitcher. */
 static camber_status find_class(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
                                 camber_tile_feature *stitched, const char **damage) {
     const camber_schema *schema = mvt->desc.features->schema;
@@ -365,8 +367,8 @@ static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature,
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
-/* Turns a feature's rings into areas. If the first ring winds the other way, as in tiles of some programs, so do all of
- * them, and the holes are the rings that go clockwise. */
+/* Turns a feature's rings into areas. If the first ring winds the other way, as in the tiles of some programs, all
+ * rings do, and the holes are the rings that go clockwise. */
 static void take_rings(camber_mvt *mvt, camber_features_stats *stats) {
     camber_mvt_geometry *geometry = &mvt->geometry;
     camber_rings rings = {.stats = stats};
@@ -389,7 +391,7 @@ static void take_rings(camber_mvt *mvt, camber_features_stats *stats) {
     geometry->point_count = points;
 }
 
-/* Reads a feature to be drawn. *kept: it has points. */
+/* Reads a feature that is to be drawn. *kept: the feature has points. */
 static camber_status read_kind(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
                                const char **damage) {
     const camber_status status = read_geometry(mvt, feature, kind);
@@ -400,7 +402,7 @@ static camber_status read_kind(camber_mvt *mvt, const tile_feature *feature, cam
     return status == CAMBER_OK && mvt->geometry.line_count ? add_to_stitcher(mvt, feature, kind, damage) : status;
 }
 
-/* Reads a feature for symbol layers, if one takes it. A point is a line of one point to the stitcher. */
+/* Reads a feature for symbol layers, if one takes it. The stitcher gets a point as a line of one point. */
 static camber_status read_label(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind, bool *kept,
                                 const char **damage) {
     camber_features_stats ignored = {0};
@@ -470,7 +472,7 @@ static unsigned wanted_kinds(const camber_mvt *mvt) {
     return 0;
 }
 
-/* Adds the layer to the list of layers, if no layers are wanted and the caller asked which there are. */
+/* Adds the layer to the list of layers, if the caller named no layers and wants to know which there are. */
 static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)

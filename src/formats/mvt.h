@@ -10,7 +10,7 @@
 /* The address of a tile. */
 typedef struct camber_tile_address {
     int zoom;
-    uint32_t column, row; /* column: may be in the next copy of the world */
+    uint32_t column, row; /* the column may be in the next copy of the world */
     unsigned open_sides;  /* CAMBER_SIDE_*: sides whose neighbour is not read */
 } camber_tile_address;
 
@@ -23,10 +23,10 @@ typedef struct camber_mvt_desc {
     const unsigned *layer_kinds; /* layer_count: CAMBER_KIND_*, the kinds to read from each. NULL: decided by unsorted
                                     and no_schema */
     bool wants_polygons, wants_areas, wants_points;
-    json_t *promote_id;  /* the property to use as id: a string, or an object with one for each layer. NULL: none */
+    json_t *promote_id;  /* the property to use as id: a string, or an object with a string per layer. NULL: none */
     bool wants_progress; /* mapbox_clip_start and mapbox_clip_end give line-progress at a feature's ends */
-    bool unsorted;       /* the tiles have no schema that the style knows, unless it names their layers */
-    bool no_schema;      /* they have none, even if a layer's name is known to the style */
+    bool unsorted;       /* the style does not know the tiles' schema, except for layers that it names */
+    bool no_schema;      /* the style does not know the tiles' schema, even if it names one of their layers */
 } camber_mvt_desc;
 
 /* Counts over all tiles so far. */
@@ -35,14 +35,14 @@ typedef struct camber_mvt_stats {
     size_t damaged_features; /* features of which only the readable parts are kept; a tile or layer that cannot be
                                 parsed counts as one */
     char damage[256];        /* the first damage: tile, layer, cause */
-    size_t features;         /* in the wanted layers */
-    size_t kept_features;    /* those of them that had any points to keep */
+    size_t features;         /* features in the wanted layers */
+    size_t kept_features;    /* features in the wanted layers of which at least one point was kept */
 } camber_mvt_stats;
 
 /* A layer that occurs in some tile. */
 typedef struct camber_mvt_layer {
     char *name;
-    bool has_lines; /* judged by its first features */
+    bool has_lines; /* judged by the layer's first features */
 } camber_mvt_layer;
 
 typedef struct camber_mvt camber_mvt;

@@ -10,7 +10,7 @@ enum { MOVE_TO = 1, LINE_TO = 2, CLOSE_PATH = 7 };
 typedef struct pen {
     camber_mvt_geometry *geometry;
     const camber_mvt_commands *commands;
-    int64_t x, y; /* 2^26 words of at most 2^31 each cannot overflow */
+    int64_t x, y; /* the sum of 2^26 words of at most 2^31 each cannot overflow */
     size_t first; /* the first point of the open line */
     bool closed;
 } pen;
@@ -25,7 +25,8 @@ static bool add_world_point(camber_mvt_geometry *geometry, double x, double y) {
     return true;
 }
 
-/* A tile's corner is exact, and so are points on a grid whose size is a power of two. */
+/* Adds the pen's position as a point. It is exact at a tile's corner, and everywhere on a grid whose size is a power of
+ * two. */
 static bool add_point(const pen *p) {
     const camber_mvt_commands *c = p->commands;
     return add_world_point(p->geometry, (c->column + (double)p->x / c->extent) / c->side,
@@ -83,7 +84,7 @@ static bool close_ring(pen *p) {
     return add_first_again(p) && end_line(p);
 }
 
-/* Executes one command, which has count points from words on. */
+/* Executes one command, whose count points begin at `words`. */
 static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {

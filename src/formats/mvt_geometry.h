@@ -10,7 +10,7 @@ typedef struct camber_mvt_geometry {
     double *points; /* in world coordinates */
     size_t *ends;
     size_t point_count, point_capacity, line_count, line_capacity;
-    size_t closed_rings; /* rings of areas that were not closed and were closed here */
+    size_t closed_rings; /* how many rings of areas were not closed, and so were closed by the reader */
     const char *damage;  /* NULL: none. If there is damage, the lines are those that could be read */
 } camber_mvt_geometry;
 
@@ -22,7 +22,7 @@ typedef struct camber_mvt_commands {
     double side; /* the width of the world in tiles */
 } camber_mvt_commands;
 
-/* Replaces the lines by those of the commands. Returns CAMBER_ERROR_MEMORY. */
+/* Replaces the lines by the lines that the commands draw. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands);
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry);
 

@@ -13,20 +13,20 @@ typedef struct camber_pool {
     camber_context *context;
     size_t limit_bytes;
     camber_pool_block *blocks, *current; /* the first block, and the one in use */
-    size_t used_bytes;                   /* of the current block */
-    size_t total_bytes;                  /* of all blocks */
+    size_t used_bytes;                   /* how much of the current block is used */
+    size_t total_bytes;                  /* the size of all blocks */
     bool exhausted; /* a request was refused since the last reset, by the limit or for lack of memory */
     bool out_of_memory;
     ProtobufCAllocator allocator; /* allocates from this pool; freed memory stays in it until a reset */
 } camber_pool;
 
-/* A mark to reset the pool to. */
+/* A mark to which the pool can be reset. */
 typedef struct camber_pool_mark {
     camber_pool_block *current;
     size_t used_bytes;
 } camber_pool_mark;
 
-/* The pool must not be moved afterwards. */
+/* Makes an empty pool, which must not be moved afterwards. */
 void camber_pool_init(camber_pool *pool, camber_context *context, size_t limit_bytes);
 void camber_pool_free(camber_pool *pool);
 /* Returns NULL if the request is refused. Running out of memory is logged. */

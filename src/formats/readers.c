@@ -1,5 +1,5 @@
-/* The table of readers, which decides who reads a file. The first reader that knows the format and supports what is
- * asked for reads it, but may decline and leave the file to those after it. */
+/* The table of readers, which decides which reader reads a file. The first reader that knows the format and supports
+ * the request reads the file. It may decline, which leaves the file to the readers after it. */
 #include "features/features.h"
 #include "formats/gdal.h"
 #include "formats/tile_reader.h"
@@ -12,7 +12,7 @@ static const camber_reader *const readers[] = {&camber_osm_reader, &camber_tile_
 
 enum { READERS = sizeof readers / sizeof *readers };
 
-/* GDAL takes any file, so there always is one. */
+/* Finds the first reader for a file. There always is one, because GDAL takes any file. */
 static const camber_reader *find_reader(const camber_source_desc *desc) {
     size_t i = 0;
     while (i + 1 < READERS && !camber_reader_takes(readers[i], desc))

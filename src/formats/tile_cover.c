@@ -4,7 +4,7 @@
 
 static const double MOST_TILES = 65536;
 
-/* A view that ends on a tile's border, within this tolerance in tiles, does not see the tile beyond it. */
+/* A view that ends at a tile's border, within this fraction of a tile, does not see the tile beyond the border. */
 static const double SLACK = 1e-6;
 
 typedef struct grid {
@@ -37,8 +37,8 @@ static bool is_outside(const grid *g, double column, double row) {
     return false;
 }
 
-/* Whether the view sees the tile. Bounds are not repeated with the world, so a tile in another copy of the world is
- * compared by its place in the first. */
+/* Whether the view sees the tile. Bounds are in the first copy of the world, so a tile in another copy is compared by
+ * its position in the first. */
 static bool is_seen(const grid *g, double column, double row) {
     const double at = column - floor(column / g->side) * g->side;
     return column >= g->west && column < g->west + g->columns && row >= g->north && row < g->north + g->rows &&

@@ -1,4 +1,4 @@
-/* Reads tiles of a set into features, or a whole file of tiles.
+/* Reads tiles of a set into features, either the given tiles or a whole file.
  *
  * Input: an open set, and the addresses of the tiles to read. Output: features whose lines are joined across borders,
  * and counts of tiles found, lost and damaged. If the style does not name the layers of a file, the layer with roads is
@@ -95,7 +95,7 @@ typedef struct input {
     size_t address_count;
     const char **layers; /* the names of the layers to read */
     size_t layer_count;
-    char *layer; /* the one of them that the style does not name. NULL: it names all of them */
+    char *layer; /* the layer among these that the style does not name. NULL: it names all of them */
 } input;
 
 /* Lists every tile of the highest zoom. */
@@ -130,7 +130,7 @@ static camber_status fail_damaged(const input *self, const camber_mvt_stats *sta
                        self->desc->path, stats->damage);
 }
 
-/* Finds out which layers there are by examining all tiles, if the set does not list them. */
+/* If the set does not list its layers, finds them by examining all tiles. */
 static camber_status look_for_layers(input *self) {
     camber_context *context = self->context;
     reader look = {.context = context, .bytes.context = context};
@@ -209,7 +209,8 @@ static bool holds_drawn(const input *self, size_t i) {
            json_is_true(json_object_get(json_array_get(self->set->layers, i), "lines"));
 }
 
-/* Chooses layers of tiles without a schema: the first with lines, or all if the style draws unknown data. */
+/* Chooses the layers of tiles without a schema: the first layer with lines, or all layers if the style draws unknown
+ * data. */
 static camber_status choose_all(input *self) {
     const size_t count = json_array_size(self->set->layers);
     camber_free(self->context, self->layers);
@@ -239,13 +240,14 @@ static camber_status choose_one(input *self) {
     return CAMBER_OK;
 }
 
-/* A style that draws unknown data trusts the names of layers only if they belong to a known schema, because anyone may
- * call a layer "roads". */
+/* Whether the style may trust the names of layers. A style that draws unknown data trusts them only if they belong to a
+ * known schema, because anyone may call a layer "roads". */
 static bool has_schema(const input *self) {
     return !self->features->schema->wants_plain || camber_tile_schema_of_layers(self->set->layers);
 }
 
-/* Counts the source layers that are read: if labels are wanted, those that symbol layers name, too. */
+/* Counts the source layers that are read. If labels are wanted, this includes the layers that only symbol layers
+ * name. */
 static size_t count_named(const input *self) {
     const camber_schema *schema = self->features->schema;
     const bool labels = camber_features_label_kinds(self->features);
@@ -325,7 +327,7 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
-/* Warns about losses. Points and areas are not mentioned, because nobody asked for them. */
+/* Warns about losses. Points and areas that are not drawn are not worth a warning, because nobody asked for them. */
 static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,

@@ -1,4 +1,4 @@
-/* Reads a layer by its spatial index, for a region.
+/* Reads the part of a layer that a region needs, by the layer's spatial index.
  *
  * Input: a layer whose format has a spatial index, and a set with a region. Output: the complete features that touch
  * the region, and those outside that affect how they are drawn (features/frontier.c), in the order of the file.
@@ -14,13 +14,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Drivers that number features in the order in which they are read without an index. */
+/* Drivers whose feature numbers are in the order in which features are read without an index. */
 static const char *const drivers[] = {"FlatGeobuf", "GPKG", "ESRI Shapefile"};
 
-/* Points that are asked for are grouped into cells. The longer side of the region has this many. */
+/* Points that the frontier asks for are grouped into cells. The longer side of the region has this many cells. */
 static const double CELLS = 8.0;
-/* Boxes are enlarged by a fraction of their coordinates, for rounding, and by a fraction of their sides, for curved
- * edges. */
+/* Boxes are enlarged by a fraction of their coordinates, because of rounding, and by a fraction of their sides, because
+ * their edges may be curved in the layer. */
 static const double ROUNDING = 1e-9, BULGE = 0.02;
 enum { EDGE_POINTS = 41, FIRST_SLOTS = 1024 };
 
@@ -34,7 +34,7 @@ typedef struct box_reader {
     bool split_only;           /* only lines that were split at the antimeridian are wanted */
     int64_t *keys;             /* by feature of the set: its number in the file */
     size_t key_capacity;
-    int64_t *taken; /* hash table of feature numbers; -1: free. A power of two, at most half in use */
+    int64_t *taken; /* hash table of feature numbers; -1: free. slot_count is a power of two; at most half are in use */
     size_t slot_count, taken_count;
 } box_reader;
 
@@ -52,8 +52,8 @@ static double half_world_of(camber_projection_kind kind) {
     return kind == CAMBER_PROJECTION_METRES ? 3.14159265358979323846 * CAMBER_MERCATOR_RADIUS_M : 180.0;
 }
 
-/* Finds out whether the layer is within one world, as most are. *wide: a line may cross the antimeridian. A layer
- * without a coordinate system is read as a whole, because only its numbers show whether they are degrees. */
+/* Finds out whether the layer is within one copy of the world, as most are. *wide: a line may cross the antimeridian. A
+ * layer without a coordinate system is read as a whole, because only its numbers show whether they are degrees. */
 static bool lies_in_world(const camber_box_reading *reading, bool *wide) {
     OGREnvelope box;
     if (!reading->has_srs || OGR_L_GetExtent(reading->layer, &box, FALSE) != OGRERR_NONE)
@@ -73,8 +73,8 @@ static bool lies_in_world(const camber_box_reading *reading, bool *wide) {
            !(*wide && reading->lines->projection == CAMBER_PROJECTION_TRANSFORM);
 }
 
-/* Converts a box of the world to the layer's coordinates, slightly enlarged. Returns false if that is not possible. All
- * latitudes beyond Web Mercator's limit are one place. */
+/* Converts a box of the world to the layer's coordinates, slightly enlarged. Returns false if that is not possible. A
+ * box that reaches Web Mercator's limit extends to the pole, because latitudes beyond the limit are moved to it. */
 static bool find_box(const box_reader *self, const camber_region *part, OGREnvelope *box) {
     const camber_feature_lines *lines = self->from->lines;
     double west, south, east, north;
@@ -105,7 +105,7 @@ static bool find_box(const box_reader *self, const camber_region *part, OGREnvel
     return true;
 }
 
-/* ---- Features, each only once ---- */
+/* ---- Features, each once ---- */
 
 static size_t find_slot(const box_reader *self, int64_t number) {
     size_t slot = (size_t)camber_mix(0, (uint64_t)number) & (self->slot_count - 1);
@@ -174,7 +174,7 @@ static camber_status add(box_reader *self, OGRFeatureH feature) {
     return CAMBER_OK;
 }
 
-/* Reads the wanted features of a box. *served: false if the box cannot be expressed in the layer's coordinate system.
+/* Reads the wanted features in a box. *served: false if the box cannot be expressed in the layer's coordinate system.
  */
 static camber_status read_box(box_reader *self, const camber_region *part, bool *served) {
     OGREnvelope box;

@@ -1,4 +1,4 @@
-/* Confines GDAL to the file that it reads. By default it follows references in files to servers and to other files.
+/* Confines GDAL to the file that it reads. By default, GDAL follows references in files to servers and to other files.
  *
  * Only drivers whose files contain their data, or store it in other files of their format, are allowed. Network access
  * is refused unless the context allows it.
@@ -65,8 +65,8 @@ char **camber_gdal_drivers(const camber_context *context, const char *path) {
     return names;
 }
 
-/* If a driver cannot recognise its files by their first bytes, GDAL opens the file to ask it. So only drivers that can
- * are asked. */
+/* Asks only drivers that recognise their files by the first bytes. For other drivers, GDAL would open the file to find
+ * out. */
 const char *camber_gdal_refused(const camber_context *context, const char *path) {
     static const char *const asked[] = {"OGR_VRT",    "GMLAS", "PDS4",          "OGR_PDS", "WFS", "OAPIF",
                                         "PostgreSQL", "MySQL", "Elasticsearch", "CSW",     NULL};
@@ -141,7 +141,7 @@ static const struct {
     {"CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false},
     /* the other parser fetches whatever a DOCTYPE names */
     {"GML_PARSER", "EXPAT", false},
-    /* limits GDAL's network file systems to this one file, which nobody names */
+    /* limits GDAL's network file systems to this one file, which nothing refers to */
     {"CPL_VSIL_CURL_ALLOWED_FILENAME", "/vsicurl/none", true},
 };
 

@@ -1,4 +1,4 @@
-/* Files that GDAL cannot open but whose first bytes show what they are, with advice on what to do.
+/* Advice on files that GDAL cannot open, but whose first bytes show their format.
  *
  * Input: the path of a file that could not be opened. Output: a row of the table, which has the advice.
  */

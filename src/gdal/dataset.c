@@ -1,4 +1,4 @@
-/* for stat64, on which VSIStatBufL is based */
+/* declares stat64, which VSIStatBufL uses */
 #define _LARGEFILE64_SOURCE
 
 #include "archive/database.h"
@@ -23,7 +23,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
-        /* GDAL's message becomes part of one of our sentences. */
+        /* GDAL's message becomes part of one of camber's sentences. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
             errors->message[--length] = 0;
@@ -46,7 +46,7 @@ static bool has_key(const key_list *list, const char *key, size_t length) {
 }
 
 static bool add_key(key_list *list, const char *key, size_t length) {
-    /* The key goes into a comma-separated line of the configuration. */
+    /* The key becomes part of a comma-separated line of the configuration. */
     if (!camber_osm_is_key(key, length) || (list->size && has_key(list, key, length)))
         return true;
     if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))
@@ -59,7 +59,7 @@ static bool add_key(key_list *list, const char *key, size_t length) {
     return true;
 }
 
-/* Columns that are not keys; the driver adds them only on demand. */
+/* Columns that are not keys. The driver adds a column only if its configuration asks for it. */
 static const char *const columns[] = {"osm_id",   "osm_version",   "osm_timestamp", "osm_uid",
                                       "osm_user", "osm_changeset", "other_tags",    "all_tags"};
 
@@ -72,12 +72,12 @@ static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
     return false;
 }
 
-/* OGR's own names of properties of every feature, which are not keys. */
+/* Whether a word is one of OGR's own names for properties that every feature has. They are not keys. */
 static bool is_ogrs(const char *word, size_t length) {
     return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
 }
 
-/* Every word of an attribute filter may be a key. Keywords of SQL do no harm as keys. */
+/* Adds every word of an attribute filter, because any of them may be a key. Keywords of SQL do no harm as keys. */
 static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
     size_t length;
     const char *word;
@@ -128,7 +128,7 @@ static camber_status write_conf(camber_dataset *dataset, const camber_schema *sc
     camber_context *context = dataset->context;
     key_list list = {.context = context};
     bool named[COLUMNS] = {false};
-    /* The list must not be empty, or the driver would have no default to fall back on. */
+    /* The list must not be empty, because the driver has no default for it. */
     bool made = add_key(&list, "highway", strlen("highway"));
     for (size_t i = 0; made && i < schema->property_count; i++)
         made = add_key(&list, schema->properties[i], strlen(schema->properties[i]));
@@ -159,15 +159,15 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && EQUAL(text + length - end_length, end);
 }
 
-/* Whether this is not a path of the file system, but something like "PG:dbname=x" or standard input, of which only the
- * driver knows whether it exists. */
+/* Whether this is not a path in the file system, but something like "PG:dbname=x" or standard input. Only the driver
+ * knows whether such a thing exists. */
 static bool is_connection(const char *path) {
     const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
     return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
 }
 
-/* Finds the real file in a path with GDAL's file systems and prefixes: /a/b.zip for /vsizip//a/b.zip/c.shp; a for
- * /vsisubfile/0_9,a and for GeoJSON:a. Files inside archives cannot be found. */
+/* Finds the real file in a path with GDAL's file systems and prefixes: /a/b.zip in /vsizip//a/b.zip/c.shp, and a in
+ * /vsisubfile/0_9,a and in GeoJSON:a. It does not look inside archives. */
 static const char *find_file(const char *path) {
     while (STARTS_WITH(path, "/vsi")) {
         const char *slash = strchr(path + 1, '/');
@@ -184,7 +184,7 @@ static const char *find_file(const char *path) {
     return path;
 }
 
-/* Refuses databases with a log, which GDAL would merge into the file, and those with virtual tables, which may open
+/* Refuses databases with a log, which GDAL would merge into the file, and databases with virtual tables, which may open
  * other files. */
 static camber_status check_database(camber_context *context, const char *path) {
     const camber_database_kind kind = camber_database_get_kind(path);
@@ -241,7 +241,7 @@ static camber_status fail_driver(const camber_dataset *dataset, const char *driv
                        dataset->desc->path, driver);
 }
 
-/* Removes quotations from GDAL's message, because they may come from any file that somebody named. */
+/* Removes quotations from GDAL's message, because the quoted text may be from any file that somebody named. */
 static void leave_out_quotes(char *message) {
     char *out = message;
     for (const char *at = message; *at; at++) {
@@ -258,7 +258,7 @@ static void leave_out_quotes(char *message) {
     *out = 0;
 }
 
-/* gdal_path: the path that GDAL was asked to open. */
+/* Says why a file could not be opened. gdal_path: the path that GDAL was asked to open. */
 static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, bool directory) {
     const char *path = dataset->desc->path, *said = dataset->errors.message;
     VSIStatBufL about;
@@ -293,7 +293,7 @@ static camber_status fail_open(camber_dataset *dataset, const char *gdal_path, b
                        said);
 }
 
-/* Returns the zoom of tiles. MBTiles states it; the name of a directory of tiles is its zoom. */
+/* Returns the zoom of a dataset of tiles. MBTiles files state it, and a directory of tiles has it as its name. */
 static int zoom_of(const camber_dataset *dataset) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), *text = NULL;
     if (EQUAL(driver, "MBTiles"))
@@ -311,7 +311,8 @@ static bool is_bare_tile(GDALDatasetH handle) {
     return EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(handle)), "MVT") && layer && !OGR_L_GetSpatialRef(layer);
 }
 
-/* Returns the path in the form that GDAL needs: a .gz goes through its decompressor, and - is standard input. */
+/* Returns the path in the form that GDAL needs: a .gz file is read through GDAL's decompressor, and - is standard
+ * input. */
 static char *gdal_path(camber_context *context, const char *path, bool directory) {
     const size_t size = strlen(path) + sizeof "/vsistdin/";
     char *made = camber_alloc(context, size, 1);
@@ -351,7 +352,7 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     options = CSLSetNameValue(options, "CONFIG_FILE", dataset->conf_path);
     if (unsorted)
         options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
-    /* CLIP=NO: the stitcher needs the buffer, because it cuts lines exactly where it joins them. */
+    /* CLIP=NO keeps the tiles' buffers. The stitcher needs them, because it cuts lines exactly where it joins them. */
     options = CSLSetNameValue(options, "CLIP", "NO");
     /* GDAL must not create files next to the one that it reads. */
     options = CSLSetNameValue(options, "WRITE_GFS", "NO");

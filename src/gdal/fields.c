@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Fields in which vector tiles store the id of a feature: OGR's name for the format's own id, OSM's, a common one,
- * TIGER's. */
+/* Fields in which vector tiles store the id of a feature: OGR's name for the format's own id, OSM's name, a common
+ * name, and TIGER's name. */
 static const char *const id_names[] = {"mvt_id", "osm_id", "id", "TLID"};
 
 /* OGR's own lookup ignores case, but names in styles do not: "Name" and "name" are different keys. */

@@ -1,4 +1,5 @@
-/* Chooses which layers of a file are read: the one that is named, the roads, or all layers that contain lines. */
+/* Chooses which layers of a file are read: the layer that is named, the layer with roads, or all layers that contain
+ * lines. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
@@ -7,7 +8,7 @@
 /* How many features are examined if a layer does not declare its geometry type. */
 enum { PEEKED_FEATURES = 32 };
 
-/* kinds: those that are read, CAMBER_KIND_*. */
+/* Whether a layer of this type may have features of kinds that are read. kinds: CAMBER_KIND_*. */
 static bool holds_read(OGRwkbGeometryType type, unsigned kinds) {
     switch (wkbFlatten(type)) {
     case wkbUnknown:
@@ -121,7 +122,7 @@ camber_status camber_dataset_layers(camber_dataset *dataset, const camber_featur
                 chosen[found++] = i;
     if (one >= 0)
         chosen[found++] = one;
-    /* Closed ways are in the layer of lines. Areas that relations make of ways have a layer of their own, and so have
+    /* Closed ways are in the layer of lines. Areas that relations make from ways have a layer of their own, and so have
      * nodes. */
     if (dataset->osm && !dataset->desc->layer && osm_kinds & CAMBER_KINDS_OF_AREAS &&
         (one = find_layer(handle, "multipolygons")) >= 0)

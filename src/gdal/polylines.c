@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Deeper than any real collection. A file that nests deeper tries to exhaust the stack. */
+/* No real collection is nested this deeply. A file that exceeds it tries to exhaust the stack. */
 enum { MAX_DEPTH = 64 };
 
 /* ---- Projection of a layer ---- */
@@ -106,7 +106,7 @@ void camber_feature_lines_free(camber_feature_lines *lines) {
 
 /* ---- One line ---- */
 
-/* Adds a point with the file's ordinates. Returns false if it is not a number. */
+/* Adds a point, given by its ordinates in the file. Returns false if one is not a number. */
 static bool add_point(camber_feature_lines *lines, double east, double north) {
     if (!isfinite(east) || !isfinite(north))
         return false;
@@ -121,7 +121,7 @@ static bool add_point(camber_feature_lines *lines, double east, double north) {
     return true;
 }
 
-/* Reads the line's ordinates to raw: count x values, then count y values. */
+/* Reads the line's ordinates into `raw`: count x values, then count y values. */
 static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
     if (!camber_world_lines_reserve(&lines->world, count) ||
         !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw))
@@ -134,7 +134,7 @@ static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t cou
     return true;
 }
 
-/* Whether the line that was read, which is closed, goes clockwise as seen. North is up in its coordinates. */
+/* Whether the closed line that was read goes clockwise on the map. In its coordinates, y grows to the north. */
 static bool goes_clockwise(const camber_feature_lines *lines, size_t count) {
     const double *x = lines->raw, *y = lines->raw + count;
     double area = 0.0;
@@ -153,8 +153,8 @@ static void turn_back(double *numbers, size_t count) {
     }
 }
 
-/* is_ring: the line ends where it begins, even if the file omits the last point. clockwise: the required direction of a
- * ring as seen; negative: leave it as it is. */
+/* is_ring: the line ends where it begins, even if the file omits the last point. clockwise: the direction that a ring
+ * must have on the map; negative: the line keeps its direction. */
 static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, bool is_ring, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
@@ -238,7 +238,7 @@ static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH pol
     return CAMBER_OK;
 }
 
-/* Arcs become chords, with OGR's default of 4 degrees each. */
+/* Splits arcs into chords of 4 degrees each, which is OGR's default. */
 static camber_status collect_curve(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
                                    int depth) {
     OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);

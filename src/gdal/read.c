@@ -1,7 +1,7 @@
 /* Reads the features of a file into a set of features with GDAL.
  *
- * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and with importance,
- * or an error, after which the set is unchanged. This file has the module's entry point: camber_gdal.
+ * Input: a path and a selection (layer, attribute filter). Output: features whose polylines are merged and have
+ * importance, or an error, after which the set is unchanged. This file has the module's entry point: camber_gdal.
  */
 #include "features/gdal_calls.h"
 #include "gdal/vector_file.h"
@@ -15,11 +15,11 @@
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
-/* The clock is read once for this many features. */
+/* The clock is read once per this many features. */
 enum { PROGRESS_FEATURES = 64 };
 
-/* A layer of the OSM driver that is read together with the lines: the areas that relations make of ways, or the nodes.
- */
+/* A layer of the OSM driver that is read together with the lines: the areas that relations make from ways, or the
+ * nodes. */
 typedef struct osm_layer {
     OGRLayerH handle;
     uint32_t index;
@@ -36,21 +36,21 @@ typedef struct reader {
     camber_dataset dataset;
     camber_feature_lines lines;
     camber_tile_stitcher *stitcher; /* NULL: the file is not vector tiles */
-    camber_tile_stitcher *labels;   /* the same for labels, which must not change how others are joined */
+    camber_tile_stitcher *labels;   /* the stitcher for labels, which must not change how other lines are joined */
 
     /* The layer that is being read. */
     OGRLayerH layer;
     uint32_t layer_index;
     camber_columns columns;
 
-    camber_features_stats stats;   /* counts of this file */
+    camber_features_stats stats;   /* counts for this file */
     char damage[512];              /* a message about the first damaged feature */
-    size_t read;                   /* features of this layer so far */
+    size_t read;                   /* how many features of this layer were read so far */
     osm_layer others[MOST_OTHERS]; /* other_count */
     size_t other_count;
     bool boxed;    /* the layer is read by its index, for a region */
     bool failed;   /* OGR reported a failure for the last feature */
-    size_t passed; /* features of all layers so far */
+    size_t passed; /* how many features of all layers were read so far */
     double shown_ms;
 } reader;
 
@@ -68,7 +68,7 @@ static camber_status begin_layer(reader *self, int index) {
     if (status != CAMBER_OK)
         return status;
     self->lines.kinds = camber_features_kinds(self->features, self->columns.unsorted);
-    /* A filter may read any field, so no field may be ignored then. */
+    /* A filter may read any field, so if there is one, no field may be ignored. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
     self->dataset.errors = (camber_gdal_errors){0};
@@ -84,8 +84,7 @@ static camber_status begin_other(reader *self, OGRLayerH layer) {
     if (strcmp(OGR_L_GetName(layer), "points") == 0)
         other->kinds = CAMBER_KINDS_OF_POINTS;
     if (self->desc->where)
-        OGR_L_SetAttributeFilter(layer,
-                                 self->desc->where); /* whether the filter fits is decided by the layer of lines */
+        OGR_L_SetAttributeFilter(layer, self->desc->where); /* the layer of lines decides whether the filter fits */
     camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(layer), &other->index);
     if (status == CAMBER_OK)
         status = camber_columns_find(&other->columns, self->features, OGR_L_GetLayerDefn(layer), false, false);
@@ -93,8 +92,8 @@ static camber_status begin_other(reader *self, OGRLayerH layer) {
     return status;
 }
 
-/* Tells the OSM driver which layers are read. It then skips the others, which is twice as fast. Features of all layers
- * come in one stream. */
+/* Tells the OSM driver which layers are read. It then skips the others, which is twice as fast. The driver returns the
+ * features of all layers in one stream. */
 static camber_status begin_osm(reader *self, const int *layers, size_t count) {
     GDALDatasetH handle = self->dataset.handle;
     char names[64] = "";
@@ -111,8 +110,9 @@ static camber_status begin_osm(reader *self, const int *layers, size_t count) {
 
 /* ---- One feature ---- */
 
-/* Finds the tile from which a feature comes. OGR's drivers encode it in the feature's number: the column in the low
- * bits, then the row, then the feature. If that contradicts the coordinates, the middle of the feature decides. */
+/* Finds the tile that contains a feature. OGR's drivers encode it in the feature's number: the column in the low bits,
+ * then the row, then the feature's number in the tile. If the tile contradicts the feature's coordinates, the middle of
+ * the feature decides. */
 static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_feature *tile) {
     const int zoom = self->dataset.zoom;
     const double side = ldexp(1.0, zoom);
@@ -152,7 +152,7 @@ static camber_status find_class(reader *self, OGRFeatureH feature, camber_geomet
     return status;
 }
 
-/* Drops the points of a label that lie outside of their tile: the next one has them. */
+/* Drops the points of a label that are outside their tile, because the neighbouring tile has them, too. */
 static void keep_own_points(camber_world_lines *world, const camber_tile_feature *tile, int zoom) {
     size_t kept = 0;
     for (size_t i = 0; i < world->point_count; i++) {
@@ -178,7 +178,7 @@ static camber_status add_to_stitcher(reader *self, OGRFeatureH feature, camber_g
     return camber_tile_stitcher_add(camber_geometry_is_label(kind) ? self->labels : self->stitcher, &tile, &lines);
 }
 
-/* Adds what was collected. */
+/* Adds the collected geometry of a feature to the set or to a stitcher. */
 static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind, uint32_t index) {
     if (self->stitcher)
         return add_to_stitcher(self, feature, kind, index);
@@ -192,7 +192,8 @@ static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_g
     return status;
 }
 
-/* Collects the geometry of a kind from a feature. way: it is the ring of an area, which OGR takes for a line. */
+/* Collects the geometry of one kind from a feature. way: the geometry is the ring of an area, which OGR takes for a
+ * line. */
 static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
     camber_feature_lines *lines = &self->lines;
     if (kind != CAMBER_GEOMETRY_AREA)
@@ -200,7 +201,7 @@ static camber_status collect(reader *self, OGRGeometryH geometry, camber_geometr
     const size_t invalid = lines->invalid_points, clamped = lines->world.clamped_points;
     const camber_status status =
         way ? camber_feature_lines_collect_ring(lines, geometry) : camber_feature_lines_collect(lines, geometry, kind);
-    if (lines->kinds & CAMBER_KIND_POLYGON) { /* they were already counted with the outlines */
+    if (lines->kinds & CAMBER_KIND_POLYGON) { /* these points were already counted with the outlines */
         lines->invalid_points = invalid;
         lines->world.clamped_points = clamped;
     }
@@ -217,7 +218,8 @@ static camber_status read_kind(reader *self, OGRFeatureH feature, camber_geometr
                                                                        : status;
 }
 
-/* Whether a geometry may be a label's of a kind: a collection may be of each. way: it is the ring of an area. */
+/* Whether a geometry may contain labels of this kind; a collection may contain any kind. way: the geometry is the ring
+ * of an area. */
 static bool may_have(OGRGeometryH geometry, camber_geometry_kind kind, bool way) {
     const int dimension = way ? 2 : OGR_G_GetDimension(geometry);
     if (!way && wkbFlatten(OGR_G_GetGeometryType(geometry)) == wkbGeometryCollection)
@@ -225,8 +227,8 @@ static bool may_have(OGRGeometryH geometry, camber_geometry_kind kind, bool way)
     return dimension == (kind == CAMBER_GEOMETRY_LABEL_POINT ? 0 : kind == CAMBER_GEOMETRY_LABEL_LINE ? 1 : 2);
 }
 
-/* Reads a feature for symbol layers, if one takes it. Whatever is odd about it was counted when it was read to be
- * drawn. */
+/* Reads a feature for symbol layers, if one takes it. Its defects are not counted again, because they were counted when
+ * the feature was read to be drawn. */
 static camber_status read_label(reader *self, OGRFeatureH feature, camber_geometry_kind kind, bool way) {
     camber_feature_lines *lines = &self->lines;
     const camber_feature_lines before = *lines;
@@ -251,7 +253,7 @@ static camber_status read_label(reader *self, OGRFeatureH feature, camber_geomet
     return status == CAMBER_OK && lines->world.line_count ? add_to_features(self, feature, kind, index) : status;
 }
 
-/* failed: OGR reported a failure for this feature. */
+/* Reads a feature of the stream. failed: OGR reported a failure for this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
     camber_feature_lines *lines = &self->lines;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
@@ -279,13 +281,13 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
 
 /* ---- The stream ---- */
 
-/* If a shapefile is cut off, each record past its end comes as a feature with a failure. That is a read error, not
- * damage to a feature. */
+/* If a shapefile is cut off, OGR returns each record past its end as a feature with a failure. That is a read error,
+ * not damage to a feature. */
 static bool is_read_error(const camber_gdal_errors *errors) {
     return errors->number == CPLE_FileIO || strstr(errors->message, "fread(") != NULL;
 }
 
-/* The message mentions OSM_USE_CUSTOM_INDEXING; the option of the driver is USE_CUSTOM_INDEXING. */
+/* GDAL's message mentions OSM_USE_CUSTOM_INDEXING, but the driver's option is named USE_CUSTOM_INDEXING. */
 static bool is_unsorted(const camber_gdal_errors *errors) {
     return strstr(errors->message, "USE_CUSTOM_INDEXING=NO") != NULL;
 }
@@ -330,8 +332,8 @@ static OGRFeatureH next_feature(reader *self, double *fraction) {
     return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, show_node_progress, self);
 }
 
-/* expected: how many features the layer announces; negative if unknown. *unsorted: the caller must start again and
- * allow nodes in any order; nothing is logged then. */
+/* Reads the features of a layer. expected: how many features the layer announces; negative if unknown. *unsorted: the
+ * caller must start again and allow nodes in any order; then nothing is logged. */
 static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) {
     camber_status status = CAMBER_OK;
     double fraction = -1;
@@ -381,7 +383,7 @@ static camber_status add_of_box(void *user, OGRFeatureH feature) {
 }
 
 /* Reads the layer for the set's region, if that is possible. If only features without lines are found, the whole layer
- * is read to find out what is wrong with it. */
+ * is read to find out the reason. */
 static camber_status read_by_box(reader *self) {
     const camber_box_reading reading = {.features = self->features,
                                         .lines = &self->lines,
@@ -428,7 +430,7 @@ static camber_status fail_where(const reader *self) {
                        OGR_L_GetName(self->layer), fields);
 }
 
-/* A tag that no feature has is usually misspelt, or a value in double quotes. */
+/* Warns about a tag that no feature has. It is usually misspelt, or is a value that was put in double quotes. */
 static void warn_where(const reader *self) {
     char key[256];
     if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
@@ -470,7 +472,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
 
 /* ---- A file ---- */
 
-/* Warns about losses. Points and areas are not mentioned, because nobody asked for them. */
+/* Warns about losses. Points and areas that are not drawn are not worth a warning, because nobody asked for them. */
 static void warn_of_losses(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
@@ -611,14 +613,14 @@ static camber_status read_once(camber_features *features, const camber_source_de
     return status;
 }
 
-/* Registers drivers once per process, because the list of drivers belongs to the process. GDAL's documentation says
- * that registering in two threads at once is not safe. */
+/* Registers drivers once per process, because all threads of a process share the list of drivers. GDAL's documentation
+ * says that registering in two threads at once is not safe. */
 static void register_drivers(void) {
     static pthread_once_t registered = PTHREAD_ONCE_INIT;
     pthread_once(&registered, GDALAllRegister);
 }
 
-/* OpenStreetMap's XML: GDAL silently leaves out ways whose nodes it has not met yet. */
+/* Checks the order of OpenStreetMap's XML, because GDAL silently leaves out ways whose nodes come after them. */
 static camber_status check_order(const camber_features *features, const camber_source_desc *desc, size_t before) {
     if (!camber_osm_xml_is_unordered(desc->path))
         return CAMBER_OK;

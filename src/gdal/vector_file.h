@@ -23,11 +23,11 @@ typedef enum camber_projection_kind {
 typedef struct camber_feature_lines {
     camber_context *context;
     camber_projection_kind projection;
-    bool latitude_first;                    /* degrees come as latitude, longitude */
+    bool latitude_first;                    /* the file has latitude before longitude */
     OGRCoordinateTransformationH transform; /* owned */
     unsigned kinds;                         /* CAMBER_KIND_*: the kinds that are read */
     camber_rings rings;
-    bool directed; /* outlines go clockwise as seen, and those of holes counter-clockwise */
+    bool directed; /* outlines go clockwise on the map, and the outlines of holes counter-clockwise */
 
     camber_world_lines world; /* the last feature's polylines */
     bool left_out;            /* a part of its geometry is not drawn */
@@ -41,7 +41,7 @@ typedef struct camber_feature_lines {
     size_t raw_capacity;
 } camber_feature_lines;
 
-/* Sets the projection for a layer; a srs of NULL means degrees. name is for messages. */
+/* Sets the projection for a layer. If srs is NULL, the coordinates are degrees. name is for messages. */
 camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name);
 /* Collects the lines of a geometry, or the rings of its polygons. Rings of areas have the form described in rings.h. */
 camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
@@ -52,7 +52,7 @@ void camber_feature_lines_free(camber_feature_lines *lines);
 
 /* ---- dataset.c: an open file ---- */
 
-/* Fails with CAMBER_ERROR_INPUT: a file, or its coordinate system, refers to another file. */
+/* Fails with CAMBER_ERROR_INPUT because a file, or its coordinate system, refers to another file. */
 camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name);
 
 /* Failures that GDAL reported since the last reset. */
@@ -68,7 +68,7 @@ typedef struct camber_dataset {
     GDALDatasetH handle;
     bool osm;   /* the file is read by the OSM driver */
     int zoom;   /* the zoom of vector tiles; negative for anything else */
-    char *conf; /* OSM: the configuration, and the path under which GDAL finds it */
+    char *conf; /* OSM: the driver's configuration, and the path at which GDAL finds it */
     char conf_path[64];
     camber_gdal_errors errors;
 } camber_dataset;
@@ -77,8 +77,8 @@ typedef struct camber_dataset {
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_schema *schema,
                                   bool unsorted, camber_dataset *dataset);
 void camber_dataset_close(camber_dataset *dataset);
-/* Returns the attribution: for OpenStreetMap's own formats the one that its licence requires, for others the file's
- * own. NULL: none. */
+/* Returns the attribution: for OpenStreetMap's own formats the text that its licence requires, and for other formats
+ * the text in the file. NULL: none. */
 const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Finds the indices of the layers to read; free them with camber_free. */
 camber_status camber_dataset_layers(camber_dataset *dataset, const camber_features *features, int **layers,
@@ -111,13 +111,13 @@ typedef struct camber_box_reading {
     void *user;
     /* Gets the next feature, or NULL at the end. */
     camber_status (*next)(void *user, OGRFeatureH *feature);
-    /* Adds the feature to the set, or nothing if it has no lines. */
+    /* Adds the feature to the set, or adds nothing if the feature has no lines. */
     camber_status (*add)(void *user, OGRFeatureH feature);
 } camber_box_reading;
 
-/* Reads the features that the set's region needs: those that touch it, and those that affect how these are drawn, in
- * the order of the file. *served: false if the layer has no suitable index, or does not state its extent well enough.
- * The set is then unchanged, and the caller reads the whole layer. */
+/* Reads the features that the set's region needs, in the order of the file: the features that touch the region, and
+ * those that affect how these are drawn. *served: false if the layer has no suitable index, or does not state its
+ * extent well enough. The set is then unchanged, and the caller reads the whole layer. */
 camber_status camber_box_read(const camber_box_reading *reading, bool *served);
 
 /* ---- confine.c: what GDAL may access ---- */
@@ -141,21 +141,21 @@ const char *camber_gdal_refused(const camber_context *context, const char *path)
 bool camber_gdal_reads_file(const char *driver);
 /* Whether a driver reads files that describe other files. */
 bool camber_gdal_describes(const char *driver);
-/* Whether the text of a coordinate system refers to another file. PROJ opens the grids that it names: a bare name among
- * its own files, a path anywhere. */
+/* Whether the text of a coordinate system refers to another file. PROJ opens the grids that the text names: a bare name
+ * is looked up among PROJ's own files, but a path may lead anywhere. */
 bool camber_gdal_names_path(const char *srs);
-/* Whether GDAL would open other files before this can be checked: through the .prj next to a shapefile, or as a MapInfo
- * table of tables. */
+/* Whether GDAL would open other files before they can be checked, because the .prj next to a shapefile or a MapInfo
+ * table of tables names them. */
 bool camber_gdal_leads_elsewhere(const char *path);
 /* Whether a path refers to the network. */
 bool camber_gdal_is_remote(const char *path);
 
 /* ---- where.c: attribute filters ---- */
 
-/* Finds the next word of a filter that is outside '...' and so may be a key. Moves *at past it. Returns NULL at the
- * end. */
+/* Finds the next word of a filter that is outside '...' and so may be a key. Moves *at past the word. Returns NULL at
+ * the end. */
 const char *camber_where_next(const char **at, size_t *length);
-/* Finds the first key in a filter that no feature of the layer has, for OpenStreetMap data of which nothing passes the
+/* Finds the first key in a filter that no feature of the layer has, for OpenStreetMap data in which nothing passes the
  * filter. Reads the file again without the filter. Returns false if all keys occur. */
 bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
 /* Lists the fields of the layer that a filter can use: "class, name, ...". */
@@ -182,18 +182,19 @@ typedef struct camber_columns {
     size_t area_count;
 } camber_columns;
 
-/* Finds the fields of a layer. Call it again for each layer. */
+/* Finds the fields of a layer. Call this for each layer. */
 camber_status camber_columns_find(camber_columns *columns, camber_features *features, OGRFeatureDefnH schema,
                                   bool tiles, bool osm);
 void camber_columns_free(camber_columns *columns, camber_context *context);
-/* Tells OGR that the other fields need not be decoded. */
+/* Tells OGR that it need not decode the other fields. */
 void camber_columns_ignore_others(const camber_columns *columns, OGRLayerH layer);
 camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature, uint32_t layer,
                                    camber_geometry_kind kind, uint32_t *class_index);
 /* Computes a hash of the feature's id, which is the same in every tile. Returns false if it has none. */
 bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id);
-/* OSM: whether a feature is a closed way with the key area, or with another key of areas if it is not a highway. The
- * driver is configured to leave this to us, because it takes closed highways with any such key for areas. */
+/* OSM: whether a feature is a closed way that has the key "area" or, unless it is a highway, another key that implies
+ * an area. The configuration makes the driver leave this decision to the reader, because the driver would take any
+ * closed highway with such a key for an area. */
 bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, OGRGeometryH geometry);
 
 #endif

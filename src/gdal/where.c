@@ -1,5 +1,5 @@
-/* Attribute filters: finds the words of a filter that may be keys, and the key that prevents everything from passing.
- */
+/* Attribute filters: finds the words of a filter that may be keys, and a key that no feature has, so that nothing
+ * passes the filter. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
@@ -25,7 +25,7 @@ const char *camber_where_next(const char **at, size_t *length) {
 
 /* ---- A key that no feature has ---- */
 
-/* Keywords of SQL, and types of CAST. A number is not a key either. */
+/* Whether a word is a keyword of SQL, a type of CAST, or a number, none of which is a key. */
 static bool is_sql(const char *word, size_t length) {
     static const char *const words[] = {"and",     "or",      "not",      "in",    "is",        "null", "like",
                                         "ilike",   "between", "escape",   "cast",  "as",        "true", "false",
@@ -45,7 +45,7 @@ typedef struct named_keys {
     size_t count;
 } named_keys;
 
-/* Lists fields of the layer that the filter names and that no feature had so far. */
+/* Lists the fields of the layer that the filter names. Those that a feature has are removed later. */
 static void list_keys(const char *where, OGRFeatureDefnH schema, named_keys *keys) {
     size_t length;
     const char *word;

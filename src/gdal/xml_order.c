@@ -1,4 +1,4 @@
-/* Only looks at the names of elements, from start to end. */
+/* Reads the file from start to end, and looks only at the names of elements. */
 #include "gdal/xml_order.h"
 
 #include "base/open_file.h"
@@ -7,7 +7,7 @@
 
 enum { MOST_NAME = 9 };
 
-/* Returns the kind of the element that begins here, numbered in the order in which kinds should come; 0: another
+/* Returns the kind of the element with this name; kinds are numbered in the order in which they should come. 0: another
  * element. */
 static int kind_of(const char *name) {
     static const char *const names[] = {"node", "way", "relation"};
@@ -19,7 +19,7 @@ static int kind_of(const char *name) {
     return 0;
 }
 
-/* Skips a comment, of which "<!--" was read. */
+/* Skips a comment, after its "<!--" was read. */
 static void skip_comment(FILE *file) {
     int dashes = 0;
     for (int c; (c = getc_unlocked(file)) != EOF && !(c == '>' && dashes >= 2);)

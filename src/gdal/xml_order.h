@@ -4,8 +4,8 @@
 
 #include "base/base.h"
 
-/* Whether a file is OpenStreetMap's XML in which nodes come after ways, or ways after relations. GDAL then does not
- * know yet what these refer to. */
+/* Whether a file is OpenStreetMap's XML in which nodes come after ways, or ways after relations. When GDAL reads such a
+ * way or relation, it does not know yet what it refers to. */
 bool camber_osm_xml_is_unordered(const char *path);
 
 #endif

@@ -6,7 +6,7 @@
 #include "base/base.h"
 
 #include <GLES3/gl32.h>
-/* It needs the header above. */
+/* This header needs the one above. */
 #include <GLES2/gl2ext.h>
 
 #define CAMBER_GL_FUNCTIONS(X)                                                                                         \

@@ -13,7 +13,8 @@ static bool can_open(const char *folder, const char *name) {
     return length > 0 && (size_t)length < sizeof path && access(path, R_OK | W_OK) == 0;
 }
 
-/* Whether there is a render node. Mesa's drivers use render nodes, and draw in software if they may not open one. */
+/* Whether there is a render node. Mesa's drivers use render nodes, and draw in software if the process may not open
+ * one. */
 static bool has_render_node(const char *folder) {
     char path[512];
     bool found = false;

@@ -1,5 +1,5 @@
-/* Keeps linked shader programs in the user's cache folder, in the driver's own format. Mesa also caches what its
- * compiler made, but reads the sources first; other drivers cache nothing. */
+/* Keeps linked shader programs in the user's cache folder, in the driver's own format. Mesa also caches the results of
+ * its compiler, but reads the sources first; other drivers cache nothing. */
 #include "gl/shader_cache.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Builds shader programs from the sources that are embedded in the library, or loads them from the cache folder.
  *
- * A variant of the stroke shader is the same source with other #defines before it. A surface keeps the latest
+ * A variant of the stroke shader is the same source after different #defines. A surface keeps the latest
  * CAMBER_STROKE_SHADERS_MAX of them, one flatten shader per kind and one count shader per method. */
 #include "gl/shaders.h"
 

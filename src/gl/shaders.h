@@ -13,12 +13,12 @@ enum {
     CAMBER_VARIANT_UNION = 16,      /* writes the sums that the union of a layer's strokes is made from */
     CAMBER_VARIANT_THIN = 32,       /* some strokes have both edges in a pixel */
     CAMBER_VARIANT_TIPS = 64,       /* some round caps are hardly wider than a pixel */
-    CAMBER_VARIANT_FEATURES = 128,  /* times CAMBER_FEATURE_* bits, which are those from here to PATTERN */
+    CAMBER_VARIANT_FEATURES = 128,  /* times the CAMBER_FEATURE_* bits, which become the bits from here to PATTERN */
     CAMBER_VARIANT_GAP = 128,       /* some strokes are two rails with a gap between them */
     CAMBER_VARIANT_BLUR = 256,      /* some strokes fade at their edges */
     CAMBER_VARIANT_DASH = 512,      /* some strokes are dashed */
-    CAMBER_VARIANT_TRIM = 1024,     /* some strokes are drawn in part */
-    CAMBER_VARIANT_RAMP = 2048,     /* some strokes change their colour along them */
+    CAMBER_VARIANT_TRIM = 1024,     /* some strokes are drawn only in part */
+    CAMBER_VARIANT_RAMP = 2048,     /* some strokes change colour along their lines */
     CAMBER_VARIANT_PATTERN = 4096,  /* some strokes are drawn with images */
     CAMBER_VARIANT_MASK = 8192,     /* writes colours that may be translucent, and their alphas to a second target */
     CAMBER_VARIANT_PITCHED = 16384, /* the plane of the lines is seen at an angle */
@@ -29,7 +29,7 @@ enum {
 
 enum {
     CAMBER_ROW_TEXELS = 7,              /* texels of a row in the row texture; stroke.vert says what is in each */
-    CAMBER_ROW_TEXTURE_WIDTH_PX = 2048, /* the same as in the shaders */
+    CAMBER_ROW_TEXTURE_WIDTH_PX = 2048, /* the shaders have the same number */
 };
 
 /* Texture units of the shaders' samplers. All samplers that are not listed are at unit 0. */

@@ -32,7 +32,7 @@ void camber_share_await(camber_share *share, const camber_shared_buffer *outputs
 enum { PROBE_BYTES = 4096 };
 
 /* Whether GL reads this word from a buffer. GL copies the buffer first, because a mapping of the buffer itself may be
- * the very memory that OpenCL wrote. */
+ * the same memory that OpenCL wrote. */
 static bool gl_sees(const camber_gl *gl, GLuint buffer, uint32_t word) {
     GLuint copy = 0;
     gl->GenBuffers(1, &copy);

@@ -21,7 +21,7 @@ extern const camber_share_path camber_share_gl;
 extern const camber_share_path camber_share_zero_copy;
 extern const camber_share_path camber_share_copy;
 
-/* Frees both sides of an output buffer. */
+/* Frees an output buffer, for GL and for the device. */
 void camber_share_release(void *user, camber_shared_buffer *output);
 
 /* Waits for GL if a frame in flight reads one of the buffers. */

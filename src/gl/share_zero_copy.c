@@ -36,8 +36,8 @@ static camber_status begin(void *user, camber_shared_buffer *outputs, size_t cou
     return CAMBER_OK;
 }
 
-/* OpenCL guarantees that host memory has what it wrote only after mapping the buffer; on the devices tried this costs
- * nothing. */
+/* OpenCL guarantees that its writes are in host memory only after the buffer was mapped; on the devices tried, mapping
+ * costs nothing. */
 static camber_status finish(void *user, camber_shared_buffer *outputs, size_t count, bool written) {
     const camber_share *share = user;
     for (size_t i = 0; i < count && written; i++) {

@@ -79,7 +79,7 @@ static camber_status load_gl(camber_surface *surface) {
                        surface->name, version ? version : "its GL");
 }
 
-/* GLES has them since 3.2, and desktop GL, which OSMesa provides, since 3.0. */
+/* GLES has half-float targets since 3.2, and desktop GL, which OSMesa provides, since 3.0. */
 static bool has_half_float_targets(const camber_gl *gl) {
     const char *version = (const char *)gl->GetString(GL_VERSION);
     return has_extension(gl, "GL_EXT_color_buffer_half_float") || has_extension(gl, "GL_EXT_color_buffer_float") ||
@@ -131,7 +131,7 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-/* Tries a back end. It is not an error if it is missing, as long as another may work. */
+/* Tries a back end. A missing back end is not an error as long as another may work. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
                                  const camber_surface_desc *desc, camber_surface **surface) {
     camber_saved_log kept;

@@ -1,5 +1,5 @@
-/* Surfaces: one file per back end (surface_egl.c, surface_osmesa.c). Drawing code does not know them: it calls through
- * camber_gl and camber_surface_ops. */
+/* Surfaces: one file per back end (surface_egl.c, surface_osmesa.c). Drawing code does not know the back ends: it calls
+ * through camber_gl and camber_surface_ops. */
 #ifndef CAMBER_GL_SURFACE_H
 #define CAMBER_GL_SURFACE_H
 
@@ -29,7 +29,7 @@ struct camber_surface {
     camber_gl gl;
     camber_surface_info info;
     bool half_float_targets; /* half-float textures can be drawn into, with blending */
-    bool es_3_2;             /* GLES 3.2, or desktop GL that has as much */
+    bool es_3_2;             /* GLES 3.2, or desktop GL with the same functions */
     uint32_t records_max;    /* the most records in a texture buffer */
     GLint largest_viewport[2];
     bool lost; /* the GL context is lost, and everything in it */
@@ -41,12 +41,12 @@ bool camber_hardware_in(const char *folder);
 /* Makes the surface's GL context current. Every public call that draws begins with this: EGL and OSMesa share one
  * dispatch table, and another surface may have been current. */
 camber_status camber_surface_make_current(camber_surface *surface);
-/* The same before something is freed, without logging. false: the GL objects were freed with the context, or will be.
+/* The same before GL objects are freed, without logging. Returns false if they were freed with the context, or will be.
  */
 bool camber_surface_try_current(camber_surface *surface);
 
-/* Returns as a status the errors that GL has reported since the last check, and logs them. what is a name for the call
- * that failed. */
+/* Returns as a status the errors that GL has reported since the last check, and logs them. `what` names the call that
+ * failed. */
 camber_status camber_surface_check(camber_surface *surface, const char *what);
 /* Drops the errors that GL has reported, after a failure that is logged already. */
 void camber_surface_forget_errors(camber_surface *surface);

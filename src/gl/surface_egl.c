@@ -1,4 +1,5 @@
-/* EGL without a display: Mesa's surfaceless platform, else the first device that provides a GLES 3 context. */
+/* Opens EGL without a display: on Mesa's surfaceless platform, else on the first device that provides a GLES 3 context.
+ */
 #include "gl/surface.h"
 
 #include <EGL/egl.h>
@@ -63,7 +64,7 @@ static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLCont
     return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, shared, plain);
 }
 
-/* Makes a context on an initialised display; if it returns false, only the display is left. */
+/* Makes a context on an initialised display. If it returns false, nothing is left to free but the display. */
 static bool make_context(egl_state *egl, EGLContext shared) {
     static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT_KHR, EGL_SURFACE_TYPE, 0, EGL_NONE};
     EGLConfig config = NULL;

@@ -1,10 +1,11 @@
-/* OSMesa: Mesa drawing into memory, with desktop GL's core profile. Newer Mesa no longer has it, so it comes second. */
+/* OSMesa: Mesa draws into memory, with desktop GL's core profile. Newer versions of Mesa no longer have it, so it is
+ * tried second. */
 #include "gl/surface.h"
 
 #include <dlfcn.h>
 #include <string.h>
 
-/* Copied from GL/osmesa.h, which newer systems lack, like the library. */
+/* Copied from GL/osmesa.h, which newer systems lack, as they lack the library. */
 #define OSMESA_FORMAT 0x22
 #define OSMESA_RGBA GL_RGBA
 #define OSMESA_PROFILE 0x33
@@ -50,7 +51,7 @@ static void release(camber_surface *surface) {
 }
 
 static camber_status create(camber_surface *surface) {
-    /* 4.3 has primitive restart with the fixed index, and GLES 3 shaders come with it. */
+    /* 4.3 has primitive restart with the fixed index, and compiles GLES 3 shaders. */
     static const int wanted[] = {OSMESA_FORMAT,
                                  OSMESA_RGBA,
                                  OSMESA_PROFILE,

@@ -14,7 +14,7 @@ typedef struct camber_found_device {
     camber_device_info info;
 } camber_found_device;
 
-/* A call that failed while devices were looked for: the reason to give if none is found. */
+/* A call that failed during the search for devices: the reason to give if none is found. */
 typedef struct camber_failed_call {
     const struct camber_gpu_backend *backend;
     const char *name; /* NULL: none failed */
@@ -32,10 +32,10 @@ typedef struct camber_gpu_backend {
     camber_status (*check_process)(camber_context *context);
     /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
     size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
-    /* Logs such a failed call, and returns the status for its error code. */
+    /* Logs a call that failed during the search, and returns the status for its error code. */
     camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
-    /* Sets device->native and what only the back end knows: rounds_correctly, host_memory, gl_context, and lanes if
-     * they are 0. close is called even if this failed. */
+    /* Sets device->native and the fields that only the back end knows: rounds_correctly, host_memory, gl_context, and
+     * lanes if they are 0. close is called even if this failed. */
     camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl);
     void (*close)(camber_device *device);
     /* These two fail without a message unless is_told. */
@@ -66,7 +66,7 @@ typedef struct camber_gpu_backend {
 
 extern const camber_gpu_backend camber_opencl;
 
-/* find.c: fails if the drivers would end the process, or would not fit into its memory, when they are first called. */
+/* find.c: fails if the drivers, when first called, would end the process or not fit into its memory. */
 camber_status camber_check_drivers(camber_context *context);
 enum { CAMBER_DEVICES_MAX = 64 };
 /* Returns how many devices were found. *failed receives the last call that failed, if any did. */

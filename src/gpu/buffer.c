@@ -1,10 +1,10 @@
-/* Makes, fills, maps and releases buffers, and counts those in the host's memory against the budget. */
+/* Makes, fills, maps and releases buffers, and counts buffers in the host's memory against the budget. */
 #include "gpu/backend.h"
 
 #include <assert.h>
 
-/* Makes a buffer's struct. Some drivers allocate memory only when a kernel first uses it, when it is too late to report
- * that there is none. So this asks the budget first, and back ends allocate host memory at once. */
+/* Makes a buffer's struct. Some drivers allocate memory only when a kernel first uses it, and then it is too late to
+ * report a lack of memory. So this function asks the budget first, and back ends allocate host memory at once. */
 static camber_buffer *take_bytes(const camber_device *device, size_t counted_bytes, camber_status *status) {
     camber_context *context = device->context;
     *status = CAMBER_OK;

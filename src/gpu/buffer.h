@@ -1,4 +1,4 @@
-/* Buffers on a device. Those in the host's memory count against the run's memory budget. */
+/* Buffers on a device. Buffers in the host's memory count against the run's memory budget. */
 #ifndef CAMBER_GPU_BUFFER_H
 #define CAMBER_GPU_BUFFER_H
 
@@ -8,8 +8,8 @@ typedef struct camber_buffer camber_buffer;
 
 /* Where a buffer's memory and its first bytes come from. */
 typedef enum camber_buffer_kind {
-    CAMBER_BUFFER_OWN,       /* memory of its own; what it holds is undefined */
-    CAMBER_BUFFER_READ_BACK, /* the same, which the host will read often */
+    CAMBER_BUFFER_OWN,       /* memory of its own; its contents are undefined */
+    CAMBER_BUFFER_READ_BACK, /* the same, but the host will read it often */
     CAMBER_BUFFER_COPY,      /* a copy of the host's bytes, which kernels only read */
     /* The host's memory itself (zero copy), which must live as long as the buffer. Kernels only read it, or write it.
      */
@@ -22,8 +22,8 @@ typedef struct camber_byte_range {
     size_t offset_bytes, size_bytes;
 } camber_byte_range;
 
-/* Each function that returns a status logs why it failed. bytes: NULL for kinds without. *buffer is left alone on
- * failure. */
+/* Each function that returns a status logs why it failed. bytes: NULL for kinds of buffers that are not made from the
+ * host's bytes. *buffer is unchanged on failure. */
 camber_status camber_buffer_create(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                    const void *bytes, camber_buffer **buffer);
 /* Makes a device buffer from a GL buffer. The device must have been opened for the GL context. Kernels may use it
@@ -34,11 +34,11 @@ void camber_buffer_release(const camber_device *device, camber_buffer **buffer);
 
 camber_status camber_buffer_write(const camber_device *device, camber_buffer *buffer, size_t offset_bytes,
                                   size_t size_bytes, const void *bytes);
-/* The same without waiting, since waiting takes longer than a short write: the bytes must stay valid until the caller
- * has waited for the device. */
+/* The same without waiting for the device, because waiting takes longer than a short write: the bytes must stay valid
+ * until the caller has waited for the device. */
 camber_status camber_buffer_write_later(const camber_device *device, camber_buffer *buffer, size_t offset_bytes,
                                         size_t size_bytes, const void *bytes);
-/* Waits for the device, and reads the buffer's first bytes; none if size_bytes is 0. */
+/* Waits for the device, and reads the buffer's first bytes; reads none if size_bytes is 0. */
 camber_status camber_buffer_read(const camber_device *device, camber_buffer *buffer, size_t size_bytes, void *bytes);
 
 typedef enum camber_map_access { CAMBER_MAP_READ, CAMBER_MAP_READ_WRITE } camber_map_access;

@@ -1,8 +1,8 @@
 /* Chooses and opens compute devices.
  *
- * Input: a desc with a word that the device must match, and memory limits. Output: a camber_device that a back end has
- * opened, and the sizes that its kernels are built for. Among matching devices, a GPU is preferred to a CPU, and a CPU
- * to anything else. Programs are made later, when they are first used (program.c). */
+ * Input: a desc that gives a word that the device must match, and memory limits. Output: a camber_device that a back
+ * end has opened, with the sizes that its kernels are built for. Among matching devices, a GPU is preferred to a CPU,
+ * and a CPU to anything else. Programs are made later, when they are first used (program.c). */
 #include "gpu/backend.h"
 
 #include "kernels/layout.h"
@@ -14,7 +14,7 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-/* Picks the best matching device: a GPU, else a CPU, else another. If number is not 0, picks the number-th matching
+/* Picks the best matching device: a GPU, else a CPU, else any other. If number is not 0, picks the number-th matching
  * device. */
 static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
     const char *match = desc->match;

@@ -14,10 +14,10 @@ struct camber_device {
     const struct camber_gpu_backend *backend;
     void *native; /* the back end's handle */
     camber_device_info info;
-    /* it divides and takes square roots exactly as the host does, so that kernels equal the twin bit for bit */
+    /* the device divides and takes square roots exactly as the host does, so that kernels equal the twin bit for bit */
     bool rounds_correctly;
     bool host_memory;   /* the device uses the host's memory, so that it can borrow the host's arrays (zero copy) */
-    bool gl_context;    /* it was opened for a GL context, so that GL buffers can be shared */
+    bool gl_context;    /* the device was opened for a GL context, so that GL buffers can be shared */
     size_t block;       /* points per work-group: the CAMBER_BLOCK that its kernels are built with */
     size_t point_chunk; /* points per work-item: CAMBER_POINT_CHUNK */
     unsigned lanes;     /* lanes of the rasterizer's vectors: CAMBER_LANES */
@@ -27,8 +27,8 @@ struct camber_device {
     struct camber_program *arc_length_program;
     struct camber_program *offset_programs[2]; /* [has arc lengths] */
     struct camber_program *raster_programs[4]; /* the rasterizer: [bits of its variant] */
-    /* The memory limit for its meshes (0: none), what they hold now, and the peak of what was held, including
-     * renderers. */
+    /* The memory limit for its meshes (0: none), the bytes that they hold now, and the most bytes that they and
+     * renderers have held. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     uint64_t drawing_allowed_bytes, drawing_bytes; /* memory limit and held bytes of its renderers' buffers */
     camber_mesh *meshes;                           /* a list: each mesh points to the next */
@@ -36,7 +36,7 @@ struct camber_device {
 
 /* Waits for all queued commands. */
 camber_status camber_device_finish(const camber_device *device);
-/* The same after a failure that has been logged: nothing reads the host's arrays afterwards. */
+/* The same after a failure that has been logged. Afterwards the device no longer reads the host's arrays. */
 void camber_device_settle(const camber_device *device);
 
 #endif

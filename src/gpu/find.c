@@ -1,4 +1,4 @@
-/* Finds the devices of all back ends, and those among them that a word names.
+/* Finds the devices of all back ends, and selects the ones that a word names.
  *
  * Main idea: drivers set themselves up when they are first called. This must happen once, under a lock, and not in a
  * child that was forked afterwards. */

@@ -7,7 +7,7 @@
 typedef struct camber_kernel camber_kernel;
 typedef struct camber_event camber_event; /* a command that was queued */
 
-/* An argument is a value if that is not NULL, and else a buffer, which may be NULL. */
+/* An argument is a value if `value` is not NULL, and else a buffer, which may be NULL. */
 typedef struct camber_kernel_arg {
     camber_buffer *buffer;
     const void *value;
@@ -31,7 +31,7 @@ typedef struct camber_launch {
 /* Queues the kernel. *event receives its event, which camber_event_end frees; event may be NULL. */
 camber_status camber_launch_kernel(const camber_device *device, const camber_launch *launch, camber_event **event);
 
-/* Waits for a command; name is the name of its stage. A NULL event has ended already. */
+/* Waits for a command; name is the name of its stage. NULL counts as an event that has ended. */
 camber_status camber_event_wait(const camber_device *device, camber_event *event, const char *name);
 
 /* Adds the time that a command took to *ms and releases the event, which may be NULL. The caller must have waited for

@@ -1,8 +1,8 @@
 /* Counts the memory that is held on a device, and divides its memory limit as memory.h says. */
 #include "gpu/memory.h"
 
-/* An OpenCL renderer gets a quarter of the memory limit for meshes. If that is less than this, it gets this much, and
- * meshes keep their whole limit. */
+/* An OpenCL renderer gets a quarter of the memory limit for meshes. If a quarter is less than DRAWING_LEAST_BYTES, the
+ * renderer gets that many bytes in addition, and meshes keep their whole limit. */
 static const uint64_t DRAWING_LEAST_BYTES = 4 * 1024 * 1024;
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {

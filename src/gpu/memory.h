@@ -11,11 +11,11 @@
 
 #include "gpu/device.h"
 
-/* Returns that many eighths of the memory limit for the device's meshes, in bytes; UINT64_MAX if there is none. */
+/* Returns the given eighths of the memory limit for the device's meshes, in bytes; UINT64_MAX if there is none. */
 uint64_t camber_device_share(const camber_device *device, unsigned eighths);
-/* Whether meshes would still hold at most half of their memory limit with size_bytes more. */
+/* Whether meshes would still hold at most half of their memory limit if they held size_bytes more. */
 bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
-/* Counts that something which held *held_bytes now holds now_bytes, and sets *held_bytes to that. */
+/* Counts that a holder of *held_bytes now holds now_bytes, and sets *held_bytes to now_bytes. */
 void camber_device_count_bytes(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes);
 
 /* How much the buffers of one OpenCL renderer may hold, and how much they hold. */

@@ -29,7 +29,7 @@ typedef struct recipe {
 
 enum { KERNELS = 16 };
 
-/* A program's kernel, and what it is called in the source. */
+/* A program's kernel, and its name in the source. */
 typedef struct named_kernel {
     const char *name;
     camber_kernel **kernel;
@@ -170,7 +170,7 @@ camber_status camber_device_network_program(camber_device *device, bool has_arc_
 }
 
 /* Makes the n-th of all programs that a device can be asked for, or leaves *program NULL past the last. The programs
- * that take longest to compile come first. */
+ * that take longest to compile are first. */
 static camber_status ensure_nth(camber_device *device, unsigned n, camber_program **program) {
     static const unsigned variants[] = {CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED, CAMBER_RASTER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };

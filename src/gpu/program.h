@@ -6,19 +6,19 @@
 
 /* One program. Only the kernels of its kind are set; the others are NULL. */
 typedef struct camber_program {
-    void *native;                          /* the back end's own */
+    void *native;                          /* the back end's handle */
     camber_kernel *classify, *scan, *emit; /* kernels of a tessellation method */
     camber_kernel *cull_count, *cull_emit; /* kernels of networks: which points a camera sees */
     camber_kernel *arc_length_sum, *arc_length_scan;
     camber_kernel *offset_clip, *offset_count, *offset_emit; /* kernels of lines with an offset */
     camber_kernel *setup, *bin_count, *bin_scan, *bin_scatter, *wind, *rasterize;
-    bool built; /* compiled from source: no cache had it */
+    bool built; /* compiled from source, because no cache had it */
     bool kept;  /* a cache has it by now */
 } camber_program;
 
 /* The source of a program, from which a back end makes it. */
 typedef struct camber_program_source {
-    const char *name; /* for people */
+    const char *name; /* name for the log */
     const char *text;
     size_t text_bytes;
     char options[256];
@@ -28,7 +28,7 @@ typedef struct camber_program_source {
 typedef struct camber_program_desc {
     camber_method method;
     bool has_arc_length;
-    bool round_limits; /* a stroke has a round limit. Without them classify is a fifth faster on PoCL */
+    bool round_limits; /* a stroke has a round limit. Without round limits classify is a fifth faster on PoCL */
 } camber_program_desc;
 
 /* Variants of the rasterizer, as bits: each bit that is set becomes a macro with the value 1. */

@@ -18,8 +18,8 @@ typedef struct camber_shared_buffer {
 typedef struct camber_shared_buffer_ops {
     /* Makes the buffer hold at least size_bytes. Its contents are lost. */
     camber_status (*reserve)(void *user, camber_shared_buffer *output, size_t size_bytes);
-    /* begin and finish enclose the device's commands on the buffers. The device has been waited for when finish is
-     * called; written says whether the commands have changed the buffers' content. */
+    /* begin and finish enclose the device's commands on the buffers. The caller waits for the device before it calls
+     * finish; written says whether the commands have changed the buffers' content. */
     camber_status (*begin)(void *user, camber_shared_buffer *outputs, size_t count);
     camber_status (*finish)(void *user, camber_shared_buffer *outputs, size_t count, bool written);
     void (*release)(void *user, camber_shared_buffer *output);

@@ -2,7 +2,7 @@
  * only once per run of equal pixels. */
 #include "io/colors.h"
 
-enum { BITS_FIRST = 12 }; /* this many slots fit into the first-level cache; smaller tables have fewer */
+enum { BITS_FIRST = 12 }; /* log2 of a slot count that fits into the first-level cache; small tables have fewer */
 
 /* ---- Keys ---- */
 
@@ -116,7 +116,7 @@ static void count_run(camber_colors *c, size_t number, uint32_t color, uint32_t 
     }
 }
 
-/* Numbers one row. *color and *number are those of the previous pixel. Returns false if there are too many colours. */
+/* Numbers one row. *color and *number belong to the previous pixel. Returns false if there are too many colours. */
 static bool number_row(camber_colors *c, size_t width, uint32_t *color, size_t *number, uint16_t *numbers) {
     const uint32_t *row = c->row;
     for (size_t x = 0; x < width;) {

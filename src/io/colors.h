@@ -7,7 +7,7 @@
 /* Numbers keys with a hash table, which has up to twice as many slots as keys. */
 typedef struct camber_key_table {
     uint16_t *slots; /* 1 + the key's number; 0: free */
-    uint32_t *keys;  /* most */
+    uint32_t *keys;  /* room for `most` keys */
     size_t count, most;
     unsigned bits; /* log2 of the number of slots in use */
 } camber_key_table;
@@ -44,8 +44,8 @@ typedef struct camber_colors {
 camber_status camber_colors_make(camber_context *context, size_t most, camber_colors *colors);
 void camber_colors_free(camber_colors *colors);
 /* Numbers the colours of a picture. If there are more than `most`, *fits becomes false. But if coarsen is set, colours
- * with equal upper bits become one: the one that more than half of their pixels have, if there is such a colour.
- * opaque: alpha counts as 255. Returns CAMBER_ERROR_MEMORY. */
+ * with equal upper bits are merged: into the colour that more than half of their pixels have, if there is one. opaque:
+ * alpha counts as 255. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_colors_number(camber_colors *colors, const camber_pixels *pixels, bool opaque, bool coarsen,
                                    bool *fits);
 

@@ -180,7 +180,7 @@ static bool give_packed(camber_deflate_stream *stream) {
     return size_bytes == 0 || stream->sink.write(stream->sink.user, stream->packed, size_bytes);
 }
 
-/* Compresses all of the input. Passes pieces on whenever they are full. */
+/* Compresses all of the input. Passes the output to the sink whenever the buffer is full. */
 static bool compress_all(camber_deflate_stream *stream, camber_uncompressed input, bool last) {
     for (;;) {
         uint8_t *to = stream->packed + stream->packed_bytes;

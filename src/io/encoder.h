@@ -1,4 +1,4 @@
-/* Shared by the files of the encoder. */
+/* Declarations that the encoder's files share. */
 #ifndef CAMBER_IO_ENCODER_H
 #define CAMBER_IO_ENCODER_H
 

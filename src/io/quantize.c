@@ -2,11 +2,11 @@
  * palette, and each colour's index in it.
  *
  * A map has a few colours that its author chose, and many mixtures of them by coverage, on the straight lines between
- * them. So flat colours, which many pixels have, get entries of their own first, and mixtures that hardly differ from
- * one are replaced by it. The other colours are grouped into cells a few levels wide, and each cell takes the nearest
- * palette entry. The cell that contributes most to the error becomes an entry, until the error is small; then the cell
- * that is farthest from its entry does, until none is far away. Finally each entry becomes the mean of the cells that
- * took it.
+ * them. So flat colours, which many pixels have, get their own entries first, and mixtures that hardly differ from a
+ * flat colour are replaced by it. The other colours are grouped into cells a few levels wide, and each cell takes the
+ * nearest palette entry. The cell that contributes most to the error becomes an entry, until the error is small; then
+ * the cell that is farthest from its entry does, until none is far away. Finally each entry becomes the mean of the
+ * cells that took it.
  *
  * All sums are integers, so the result is the same on every machine. */
 #include "io/quantize.h"
@@ -160,7 +160,8 @@ static size_t make_cells(camber_quantizer *self, const camber_colors *colors, ca
     return self->table.count;
 }
 
-/* Moves opaque cells to the front. Opaque cells take only opaque entries, and others only those that are not. */
+/* Moves opaque cells to the front. Opaque cells take only opaque entries, and other cells only entries that are not
+ * opaque. */
 static size_t part_opaque(cell *cells, size_t count) {
     size_t opaque = 0;
     for (size_t i = 0; i < count; i++) {

@@ -1,4 +1,4 @@
-/* Makes polylines of areas: every ring closed, outer rings clockwise as seen, holes counter-clockwise.
+/* Makes polylines from areas: every ring closed, outer rings clockwise as seen, holes counter-clockwise.
  *
  * Input: rings of points in px, and which of them belong together. Output: one polyline per ring, as
  * camber_polylines_create makes them. Thus the winding numbers of neighbours agree: where areas of one colour overlap,

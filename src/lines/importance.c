@@ -27,8 +27,8 @@ static float round_up(double squared) {
 }
 
 static void weigh_range(const double *points, range whole, float *importance) {
-    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
-     * ranges wait. */
+    /* This is a stack instead of a recursion. The larger half waits while the smaller half is split, so that at most
+     * log2(count) ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;
@@ -55,8 +55,8 @@ static void weigh_range(const double *points, range whole, float *importance) {
 }
 
 /* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split at the
- * point farthest from the seam. The point farthest from the line between these two is always kept as well, so that an
- * area remains an area, however small it is. */
+ * point farthest from the seam. The point farthest from the line between these two points is always kept as well, so
+ * that an area remains an area, however small it is. */
 static void weigh_ring(const double *points, size_t first, size_t last, float *importance) {
     double largest, before, after;
     const size_t far = camber_farthest(points, first, last, &largest);
@@ -86,8 +86,8 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 
 /* ---- Shared nodes ---- */
 
-/* Nodes are looked up in several rounds, each for a share of all hashes, so that the table stays this small however
- * many points there are. Each share costs one more pass over the points. */
+/* Nodes are looked up in several rounds, each for a part of all hashes, so that the table stays this small however many
+ * points there are. Each share costs one more pass over the points. */
 static const size_t MOST_SLOTS = (size_t)1 << 24;
 enum { BATCH = 64 };
 

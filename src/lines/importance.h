@@ -14,9 +14,9 @@
  * of them get the largest of their importances, so that a node is kept everywhere or nowhere. Points kept for that
  * reason can raise the distance to 2 T.
  *
- * Polyline i has the points [offsets[i], offsets[i + 1]), polyline_count + 1 entries; points are pairs, and points
- * and importance are indexed by the offsets as they are. Points should be finite. Returns CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_LIMIT (2^31 points and more). Cost: O(n log n), in the worst case too. */
+ * Polyline i has the points [offsets[i], offsets[i + 1]), so offsets has polyline_count + 1 entries. Points are pairs
+ * of coordinates. The offsets are indices into points and importance. Points should be finite. Returns
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^31 or more points). Cost: O(n log n), in the worst case too. */
 camber_status camber_importance_weigh(camber_context *context, const double *points, const size_t *offsets,
                                       size_t polyline_count, float *importance);
 

@@ -8,15 +8,15 @@
  *     points       A B C D A           the last point is the first again
  *     slots    (D) A B C D A (B)       in brackets: sentinels, so that neighbours are always i - 1 and i + 1
  *
- * Most polylines need none of that. So open ones are put in bundles, all points of a bundle at once, in loops that
- * compilers vectorise. Only if such a bundle turns out to have an irregular point are its polylines put one by one. */
+ * Most polylines need none of that. So open ones are appended in bundles, all points of a bundle at once, in loops that
+ * compilers vectorise. Only if a bundle turns out to have an irregular point are its polylines appended one by one. */
 #include "lines/lines.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* BUNDLE_POINTS: few enough that a bundle stays in the first-level cache while it is put and checked. AHEAD_POINTS: how
- * far ahead of a ring's points memory is prefetched, which is usually the next ring. */
+/* BUNDLE_POINTS: few enough that a bundle stays in the first-level cache while it is copied and checked. AHEAD_POINTS:
+ * how far ahead of a ring's points memory is prefetched; the next ring is usually there. */
 enum { BUNDLE_POINTS = 1024, AHEAD_POINTS = 256 };
 
 /* Points within 1e-9 px of each other count as the same. */
@@ -71,7 +71,7 @@ static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
     p->info[i] = info;
 }
 
-/* Puts one stretch of valid points: drops repeated points, marks the ends, and gives a ring its sentinels. */
+/* Appends one stretch of valid points: drops repeated points, marks the ends, and gives a ring its sentinels. */
 static void put_stretch(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
     const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
     const bool closes = may_close && is_closed(points, count);
@@ -95,8 +95,7 @@ static void put_stretch(camber_polylines *p, const float *points, size_t count, 
     p->stats.kept_segments += kept_count - 1;
     p->stats.dots += kept_count == 1;
     if (!closes || kept_count < 3)
-        /* the leading slot was put for something that turned out not to be a ring: it remains a sentinel, which draws
-         * nothing */
+        /* the stretch turned out not to be a ring: its leading slot remains a sentinel, which draws nothing */
         return;
     /* The last point may have been dropped because it repeats its neighbour. The ring still closes exactly. */
     p->x[end] = p->x[first];
@@ -134,8 +133,8 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
 
 /* ---- Bundles of open polylines ---- */
 
-/* Returns the end of the bundle, all of one row, that begins with a polyline; returns the polyline itself if it is
- * empty or closed. */
+/* Returns the end of the bundle that begins with the polyline first; all polylines of a bundle have the same row.
+ * Returns first if this polyline is empty or closed. */
 static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
     size_t end = first;
     for (; end < desc->polyline_count; end++) {
@@ -148,7 +147,7 @@ static size_t find_bundle_end(const camber_polylines_desc *desc, size_t first) {
     return end;
 }
 
-/* Returns how many of the points that were put repeat the previous one; SIZE_MAX if one is invalid. */
+/* Returns how many of these points repeat the previous one, or SIZE_MAX if a point is invalid. */
 static size_t count_repeated(const float *x, const float *y, size_t count) {
     uint32_t invalid = 0, repeated = 0;
     for (size_t i = 0; i < count; i++)
@@ -160,7 +159,7 @@ static size_t count_repeated(const float *x, const float *y, size_t count) {
     return invalid ? SIZE_MAX : repeated;
 }
 
-/* Puts the coordinates of points. */
+/* Copies the coordinates of points to x and y. */
 static void put_coordinates(const float *restrict points, size_t count, float *restrict x, float *restrict y) {
     for (size_t i = 0; i < count; i++) {
         x[i] = points[2 * i];
@@ -178,7 +177,7 @@ static size_t count_joined(const camber_polylines_desc *desc, size_t first, size
     return count;
 }
 
-/* Puts the polylines [first, end). false: a point is invalid, or repeats the previous one of its polyline. */
+/* Appends the polylines [first, end). false: a point is invalid, or repeats the previous one of its polyline. */
 static bool put_bundle(camber_polylines *p, const camber_polylines_desc *desc, size_t first, size_t end) {
     const size_t from = desc->offsets[first], count = desc->offsets[end] - from, slot = p->slot_count + 1;
     put_coordinates(desc->points + 2 * from, count, p->x + slot, p->y + slot);
@@ -215,9 +214,9 @@ static void put_polylines(camber_polylines *p, const camber_polylines_desc *desc
 
 /* ---- Rings of areas ---- */
 
-/* Puts the coordinates of a ring's points, whose values are `step` apart in memory. Returns twice the ring's signed
- * area, positive if clockwise as seen; NAN if a point is invalid or repeats the previous one. One loop does it all,
- * because most rings are short. */
+/* Copies the coordinates of a ring's points, whose values are `step` apart in memory, to x and y. Returns twice the
+ * ring's signed area, positive if clockwise as seen; NAN if a point is invalid or repeats the previous one. One loop
+ * does all of this, because most rings are short. */
 static inline double put_around(const float *from_x, const float *from_y, size_t step, size_t count, float *x,
                                 float *y) {
     uint32_t irregular = 0;
@@ -261,7 +260,7 @@ static void turn_over(float *values, size_t count) {
     }
 }
 
-/* Puts what is left of a ring with fewer than two points. */
+/* Appends a ring of which fewer than two points are left. */
 static void put_rest(camber_polylines *p, const float *x, const float *y, size_t count, uint32_t row) {
     p->stats.empty_polylines += count == 0;
     if (count == 0)
@@ -314,8 +313,8 @@ void camber_polylines_put_ring(camber_polylines *p, size_t polyline, const float
     p->stats.rings++;
 }
 
-/* Puts sentinels up to the end of the last block, and one after it. They are at the origin, so that no kernel meets a
- * NaN. */
+/* Appends sentinels up to the end of the last block, and one after it. They are at the origin, so that no kernel meets
+ * a NaN. */
 static void put_padding(camber_polylines *p) {
     const size_t used = p->slot_count + 1;
     p->slot_count = (p->slot_count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;

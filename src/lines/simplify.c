@@ -19,8 +19,8 @@ typedef struct range {
 
 /* Marks the points to keep strictly between the ends of a range. */
 static void mark(const double *points, range whole, double tolerance_squared, unsigned char *keep) {
-    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
-     * ranges wait. */
+    /* This is a stack instead of a recursion. The larger half waits while the smaller half is split, so that at most
+     * log2(count) ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;
@@ -44,8 +44,8 @@ static void mark(const double *points, range whole, double tolerance_squared, un
 }
 
 /* A ring begins and ends at the same point, so that the segment between its ends has no length. It is split first at
- * the point farthest from the seam. If no other point is kept, the point farthest from the line between these two is,
- * so that an area remains an area, however small it is. */
+ * the point farthest from the seam. If no other point is kept, the point farthest from the line between these two
+ * points is kept as well, so that an area remains an area, however small it is. */
 static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
     double largest;
     const size_t far = camber_farthest(points, 0, count - 1, &largest);

@@ -1,12 +1,12 @@
 /* Tells whether a label would cover others.
  *
- * Input: shapes, one after the other. Output: whether one is free. Main idea: a grid of cells, each with a list of the
- * shapes that touch it. */
+ * Input: shapes, one after the other. Output: whether a shape is free. Main idea: a grid of cells, each with a list of
+ * the shapes that touch it. */
 #include "map/collision.h"
 
 #include <math.h>
 
-/* A grid has no more cells than this a side; beyond that they are larger. */
+/* The most cells along a side of a grid. If the picture needs more, the cells are larger. */
 enum { MOST_CELLS_A_SIDE = 1024 };
 
 camber_status camber_collision_make(camber_context *context, camber_box bounds, double cell,
@@ -53,7 +53,7 @@ bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b) {
     return b->radius > 0.0f ? circle_meets_box(b, a) : true;
 }
 
-/* Whether a new label may cover one that is there. */
+/* Whether a new label may cover a label that is already there. */
 static bool may_overlap(camber_symbol_overlap made, camber_symbol_overlap there) {
     return made == CAMBER_OVERLAP_ALWAYS || (made != CAMBER_OVERLAP_NEVER && there != CAMBER_OVERLAP_NEVER);
 }
@@ -61,7 +61,7 @@ static bool may_overlap(camber_symbol_overlap made, camber_symbol_overlap there)
 /* ---- The grid ---- */
 
 typedef struct cell_range {
-    size_t x0, y0, x1, y1; /* all of them count */
+    size_t x0, y0, x1, y1; /* x1 and y1 are included */
 } cell_range;
 
 static size_t cell_of(double offset, double cell, size_t count) {

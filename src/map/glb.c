@@ -39,7 +39,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* glTF's constants, which are those of OpenGL. */
+/* glTF's constants, which are the same as OpenGL's. */
 enum {
     GLTF_SHORT = 5122,
     GLTF_UNSIGNED_SHORT = 5123,
@@ -69,7 +69,7 @@ static const attribute ATTRIBUTES[] = {
     {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 52, true},
 };
 #define ATTRIBUTE_COUNT (sizeof ATTRIBUTES / sizeof *ATTRIBUTES)
-#define PLAIN_STRIDE 52 /* without COLOR_0, the last */
+#define PLAIN_STRIDE 52 /* without COLOR_0, which is last */
 #define COLORED_STRIDE 60
 
 #define BLOCK_BYTES 65536
@@ -399,7 +399,7 @@ static void describe_lines(json_t *root, json_t *primitives, const writer *w, bo
     append(materials, material(w->desc, false, ok), ok);
 }
 
-/* Adds the primitive of the areas. Their bytes come after those of the lines. */
+/* Adds the primitive of the areas. Their bytes follow the bytes of the lines. */
 static void describe_areas(json_t *root, json_t *primitives, const writer *w, bool *ok) {
     static const attribute position = {"POSITION", "VEC3", GLTF_FLOAT, 0, false},
                            color = {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 12, true};

@@ -1,18 +1,18 @@
-/* Texts along lines: the way that a text takes, and where each of its glyphs is on it.
+/* Texts along lines: finds the part of a line that a text covers, and where on it each glyph is.
  *
- * Input: a candidate on a line. Output: a track, the points of the line as far as the text takes it.
+ * Input: a candidate on a line. Output: a track, which has the points of the part of the line that the text covers.
  *
  *          first          anchor         last
  *      ----|--o-----------x---------o----|-----     o: points of the line
  *        negative         0        positive         distances, in the order of the text
  *
  * Main idea: a text runs with the line, or against it if it would be upside down. Each cluster of glyphs is turned as a
- * whole about its middle, which stands on the line. Texts that may be written downwards are, if the line is steep. */
+ * whole about its middle, which is on the line. If the line is steep, texts that may be written downwards are. */
 #include "map/label_layout.h"
 
 #include <math.h>
 
-/* Middles of glyphs that stand upright in a line that goes down are so far above their baselines, em. */
+/* How far the middle of a glyph that is upright in a downward line is above its baseline, em. */
 static const double UPRIGHT_MIDDLE_EM = 0.38;
 
 double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end) {
@@ -35,7 +35,7 @@ double camber_label_cluster_middle(const camber_text *text, size_t first, double
     return 0.5 * (low + high);
 }
 
-/* The line in the space where the text is set: the plane, or the picture as a pitch shows it. */
+/* The line in the space in which the text is placed: the plane, or the picture as a pitch shows it. */
 typedef struct text_line {
     const camber_label_layout *layout;
     const float *points;
@@ -76,7 +76,7 @@ typedef struct side_of_line {
     double sign; /* of distances */
 } side_of_line;
 
-/* Adds the points of a side of the line until the text ends. CAMBER_ERROR_NOT_FOUND: the line ends before. */
+/* Adds the points of a side of the line until the text ends. CAMBER_ERROR_NOT_FOUND: the line ends before that. */
 static camber_status walk(camber_label_track *track, const text_line *line, const double anchor[2], side_of_line side) {
     double at[2] = {anchor[0], anchor[1]}, distance = 0.0;
     const double wanted = side.sign < 0.0 ? -track->first : track->last;
@@ -143,7 +143,8 @@ camber_track_point camber_label_track_point(const camber_label_track *track, dou
                                 a[1] + t * (b[1] - a[1]) + cosine * track->side * track->across, cosine, sine};
 }
 
-/* The way from the first glyph to the last, as it is seen; of a text of one glyph that of its segment. */
+/* Computes the direction from the first glyph to the last, as it is seen; for a text of one glyph, the direction of its
+ * segment. */
 static void look_along(const camber_label_layout *layout, const camber_label_track *track, double way[2]) {
     const camber_track_point first = camber_label_track_point(track, track->first);
     const camber_track_point last = camber_label_track_point(track, track->last);

@@ -5,7 +5,7 @@
  *     |-- half a label, 2 em --o---- spacing ----o---- spacing ----o---|
  *
  * Main idea: anchors are counted from the line's first point, wherever the picture is, so that a part of the map has
- * the same ones in each picture. Only segments that touch the box of those that are wanted are searched. */
+ * the same anchors in every picture. Only segments that touch the box in which anchors are needed are searched. */
 #include "map/label_anchors.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static double length_of(const camber_label_path *path) {
     return path->along[path->count - 1];
 }
 
-/* The turn at a point between two segments, in radians. */
+/* Returns the turn at a point between two segments, in radians. */
 static double turn_at(const camber_label_path *path, size_t i) {
     const double *p = path->points + 2 * i;
     const double ax = p[0] - p[-2], ay = p[1] - p[-1], bx = p[2] - p[0], by = p[3] - p[1];
@@ -56,7 +56,7 @@ static camber_status add(camber_path_anchors *anchors, camber_path_anchor anchor
     return CAMBER_OK;
 }
 
-/* Cuts the share of a segment that is in the box along one axis. */
+/* Reduces share, two fractions of a segment's length, to the part of the segment that is in the box along one axis. */
 static void cut(double from, double to, double low, double high, double share[2]) {
     const double step = to - from;
     if (step == 0.0) {
@@ -73,7 +73,7 @@ static bool is_in(const camber_box *box, const double point[2]) {
     return point[0] >= box->x0 && point[0] <= box->x1 && point[1] >= box->y0 && point[1] <= box->y1;
 }
 
-/* Anchors at an even spacing from an offset on. wanted NULL: finds out whether there is any. */
+/* Evenly spaced anchors, the first of them at an offset. wanted NULL: only finds out whether there are any. */
 typedef struct anchor_series {
     const camber_label_path *path;
     const camber_anchor_rule *rule;

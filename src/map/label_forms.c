@@ -6,9 +6,9 @@
 #include <math.h>
 
 static const double PI = 3.14159265358979323846;
-/* MapLibre's text has its baseline so far above the middle of its line, em. */
+/* In MapLibre, text has its baseline this far above the middle of its line, em. */
 static const double BASELINE_EM = 7.0 / 24.0;
-/* An evaluation's texts take so much memory at most. */
+/* The most memory for the texts of an evaluation. */
 #define ARENA_LIMIT ((size_t)16 << 20)
 /* The first memory of an arena; and how many rules and looks are compared with a new one. */
 enum { ARENA_ROOM = 4096, RULES_COMPARED = 4, LOOKS_COMPARED = 64 };
@@ -28,7 +28,7 @@ static void note_missing(void *user, const char *name) {
 
 /* ---- Looks ---- */
 
-/* Adds a look, or finds its equal. */
+/* Finds an equal look, or adds this one. */
 static camber_status add_look(camber_label_layout *layout, const camber_label_look *look, uint32_t *index) {
     const size_t first = layout->look_count > LOOKS_COMPARED ? layout->look_count - LOOKS_COMPARED : 0;
     for (size_t i = layout->look_count; i-- > first;) {
@@ -56,7 +56,7 @@ static camber_label_look look_of(const camber_symbol_part *part, bool flat, doub
                                .flat = flat};
 }
 
-/* An image that is no distance field is drawn as it is. */
+/* An image that is not a distance field is drawn unchanged. */
 static camber_label_look plain_look(const camber_symbol_part *part, bool flat) {
     return (camber_label_look){.color = {1.0f, 1.0f, 1.0f, (float)part->opacity}, .flat = flat};
 }
@@ -76,7 +76,7 @@ static bool is_right(camber_text_anchor a) {
     return a == CAMBER_ANCHOR_RIGHT || a == CAMBER_ANCHOR_TOP_RIGHT || a == CAMBER_ANCHOR_BOTTOM_RIGHT;
 }
 
-/* Away from the anchor by a distance along each axis. */
+/* Computes the offset that moves a text away from its anchor by a distance along each axis. */
 static void move_away(camber_text_anchor anchor, double right, double down, double offset_em[2]) {
     offset_em[0] = is_left(anchor) ? right : is_right(anchor) ? -right : 0.0;
     offset_em[1] = is_top(anchor) ? down - BASELINE_EM : is_bottom(anchor) ? BASELINE_EM - down : 0.0;
@@ -144,7 +144,7 @@ static camber_status make_rule(camber_label_layout *layout, const camber_symbol 
     return add_look(layout, &text, &rule->text_look);
 }
 
-/* Finds a rule for the symbol among the last ones, or adds one. icon: what its icon is, for the look. */
+/* Finds a rule for the symbol among the last ones, or adds one. icon: the symbol's icon, on which the look depends. */
 static camber_status find_rule(camber_label_layout *layout, const camber_symbol *symbol,
                                const camber_sprite_image *icon, uint32_t *index) {
     camber_label_rule made;
@@ -177,8 +177,8 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
 
 /* ---- Forms ---- */
 
-/* How much less a feature matters than others, as far as its tile or file says so. A style may order labels itself;
- * many rely on the order of features in tiles, which ranks also give. */
+/* Returns how much less a feature matters than others, if its tile or file says so. A style may order labels itself,
+ * but many styles rely on the order of features in tiles, which is also the order of their ranks. */
 static double weight_of(const camber_features *features, const camber_feature_view *feature) {
     static const struct {
         const char *name;

@@ -1,12 +1,11 @@
 /* Makes the forms of icons.
  *
- * Input: an item's icon, and how large the item shows it. Output: its image with a border, or the rings of its edge.
- * Main idea: an icon that was fitted to a text grows in the parts that its sprite names, and keeps the others. A curve
- * for each axis says where each px of the icon goes:
+ * Input: an item's icon, and the size at which the item shows it. Output: its image with a border, or the rings of its
+ * edge. Main idea: an icon that is fitted to a text is stretched in the parts that its sprite lists, and its other
+ * parts keep their size. A curve for each axis says where each px of the icon is drawn:
  *
  *     icon    |---|====|---|          - keeps its size
- *     form    |---|==========|---|    = is stretched
- */
+ *     form    |---|==========|---|    = is stretched */
 #include "map/label_icons.h"
 
 #include "text/contours.h"
@@ -17,7 +16,7 @@
 
 enum { KNOTS_MAX = 64, SIDE_MAX_PX = 4096 };
 
-/* A curve of straight pieces, from px of the icon to px of the form; both ascend. */
+/* A piecewise linear curve from px of the icon to px of the form. Both ascend. */
 typedef struct curve {
     float from[KNOTS_MAX + 2], to[KNOTS_MAX + 2];
     size_t count;
@@ -30,7 +29,8 @@ static void add_knot(curve *c, float from, float to) {
     c->to[c->count++] = to;
 }
 
-/* Makes the curve of an axis: zones are stretched alike, so that the icon's size becomes the form's. */
+/* Makes the curve of an axis: all zones are stretched by the same factor, so that the icon's size becomes the form's.
+ */
 static curve make_curve(float (*zones)[2], size_t zone_count, float size, float wanted) {
     curve c = {{0.0f}, {0.0f}, 0};
     float stretched = 0.0f, at = 0.0f, to = 0.0f;

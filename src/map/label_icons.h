@@ -1,15 +1,15 @@
-/* How icons are drawn: as images with a border, or as rings if they are distances. */
+/* How icons are drawn: as images with a border, or as rings if their pixels are distances. */
 #ifndef CAMBER_MAP_LABEL_ICONS_H
 #define CAMBER_MAP_LABEL_ICONS_H
 
 #include "map/labels.h"
 
-/* An icon in one size: as it is drawn for some items. Its frame is what the item's matrix maps, from 0 to 1. */
+/* An icon at one size, as some items draw it. Its frame is the unit square, which the item's matrix maps. */
 typedef struct camber_icon_form {
     const camber_sprite_image *icon;
-    uint32_t width, height; /* of the image, without the border; a stretched one is larger or smaller than the icon */
-    camber_image image;     /* with a transparent border of one px, so that its edges do not show its other side */
-    camber_outline outline; /* of an icon of distances, in shares of the frame; then there is no image */
+    uint32_t width, height; /* of the image without the border; a stretched image is larger or smaller than the icon */
+    camber_image image;     /* with a transparent border of one px, so that an edge does not show the opposite edge */
+    camber_outline outline; /* of an icon of distances, in fractions of the frame; such an icon has no image */
     void *outline_block;
 } camber_icon_form;
 

@@ -1,6 +1,6 @@
 /* Makes the items of labels that are shown.
  *
- * Input: candidates after placement. Output: for each glyph and icon how it comes into the picture. */
+ * Input: candidates after placement. Output: for each glyph and icon, how it is drawn in the picture. */
 #include "map/label_layout.h"
 
 #include <math.h>
@@ -77,8 +77,8 @@ static camber_status add_item(item_maker *m, const camber_label_item *item) {
     return CAMBER_OK;
 }
 
-/* Brings a box or an em, whose top left corner or origin is at u, v of the frame, into the picture. turned: by a
- * quarter, clockwise. */
+/* Sets an item's matrix so that it draws a box, or an em, whose top left corner, or origin, is at this point of the
+ * frame. turned: it is turned clockwise by 90 degrees. */
 static void set_matrix(camber_label_item *item, const camber_label_frame *f, const double at[2], const double size[2],
                        bool turned) {
     item->x = (float)(f->x + f->xx * at[0] + f->xy * at[1]);
@@ -158,13 +158,13 @@ static camber_status add_text(item_maker *m, const camber_label_candidate *c, ui
 
 /* ---- Texts along lines ---- */
 
-/* The frame of a cluster of glyphs: its middle is on the line, and it is turned with the line, unless glyphs stay
- * upright. */
+/* Returns the frame of a cluster of glyphs: its middle is on the line, and it is turned with the line, unless glyphs
+ * stay upright. */
 static camber_label_frame frame_on(const item_maker *m, const camber_label_rule *rule, double distance) {
     const camber_track_point point = camber_label_track_point(&m->track, distance);
     double cosine = 1.0, sine = 0.0;
     if (rule->symbol.text.rotation_alignment == CAMBER_ALIGN_MAP) {
-        /* The text's way down is the line's way. */
+        /* Vertical text runs downwards along the line. */
         cosine = m->track.vertical ? point.sine : point.cosine;
         sine = m->track.vertical ? -point.cosine : point.sine;
     }

@@ -1,20 +1,21 @@
-/* Finds where the labels of a view may stand.
+/* Finds where the labels of a view may be placed.
  *
- * Input: features, a view. Output: candidates by layer. Main idea: features are looked through once for those that the
- * view may see, class by class; a layer then decides once a class, as all of its features say the same. */
+ * Input: features, a view. Output: candidates by layer. Main idea: the features that the view may see are found once,
+ * and sorted by class. Each layer is then evaluated once per class, because all features of a class give the same
+ * result. */
 #include "map/label_layout.h"
 
 #include "features/rings.h"
 
 #include <math.h>
 
-/* How far outside of the picture an anchor may be at most whose label comes into it, CSS px. */
+/* How far outside the picture an anchor may be if its label reaches into the picture, CSS px. */
 static const double REACH_PX = 320.0;
 
-/* Lines are simplified as they are drawn, device px. */
+/* The tolerance to which lines are simplified, as for drawing, device px. */
 static const double SIMPLIFY_PX = 0.25;
 
-/* Polylines that the view may see: all rings of an area, or one line, or the points of one. */
+/* Polylines that the view may see: all rings of an area, one line, or one polyline of points. */
 typedef struct thing {
     uint32_t class, feature;
     size_t first_polyline, end_polyline;
@@ -23,15 +24,15 @@ typedef struct thing {
 
 typedef struct layout_maker {
     camber_label_layout *layout;
-    camber_box corners; /* of what is seen, world coordinates */
-    camber_box seen;    /* with the reach of the labels in hand */
+    camber_box corners; /* box around what is seen, world coordinates */
+    camber_box seen;    /* the same, widened by the reach of the current labels */
     double least_importance;
     thing *things; /* sorted by class */
     size_t thing_count, thing_capacity;
     size_t *class_things; /* class_count + 1 */
     const camber_layer_look *look;
     uint32_t form;
-    camber_label_path path; /* of the line in hand, px from origin */
+    camber_label_path path; /* of the current line, px from origin */
     size_t path_capacity[2];
     double origin[2]; /* world coordinates of its first point */
     camber_path_anchors anchors;
@@ -46,7 +47,7 @@ static bool is_label(camber_geometry_kind kind) {
            kind == CAMBER_GEOMETRY_LABEL_POINT;
 }
 
-/* The box of the quadrangle that is seen. */
+/* Returns the box around the quadrangle that is seen. */
 static camber_box find_corners(const camber_label_layout *layout) {
     double corners[8];
     camber_view_corners(layout->view, corners);
@@ -115,7 +116,7 @@ static camber_status find_things(layout_maker *m) {
     return status;
 }
 
-/* Sorts the things by class; those of one class stay in their order. */
+/* Sorts the things by class. The sort is stable. */
 static camber_status sort_things(layout_maker *m) {
     camber_context *context = m->layout->context;
     const size_t classes = m->layout->features->class_count;
@@ -142,8 +143,8 @@ static bool is_in(const camber_box *box, double x, double y) {
     return x >= box->x0 && x <= box->x1 && y >= box->y0 && y <= box->y1;
 }
 
-/* Adds the form of the class in hand at a place of the world, if that is near enough to what is seen. on_line: it
- * stands on this line and segment. NULL: on none. */
+/* Adds a candidate with the current class's form at a point of the world, if the point is near enough to what is seen.
+ * on_line: has the line and the segment that the candidate is on. NULL: it is on no line. */
 static camber_status add_candidate(layout_maker *m, const thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
@@ -175,13 +176,13 @@ static int compare_points(const double *a, const double *b) {
     return a[0] != b[0] ? (a[0] < b[0] ? -1 : 1) : a[1] != b[1] ? (a[1] < b[1] ? -1 : 1) : 0;
 }
 
-/* Where a polyline's path begins, and which way it goes. Lines that were merged may run either way, and rings of them
- * may begin anywhere, as the order in the file decides: they begin with the end, or the point, that comes first in the
- * order of coordinates. */
+/* Where a polyline's path begins, and in which direction it runs. The direction of a merged line, and where a merged
+ * ring begins, depend on the order in the file. Therefore the path of a merged line begins at the end that is first in
+ * the order of coordinates, and the path of a merged ring at the point that is. */
 typedef struct path_order {
     const double *points;
     size_t count;
-    size_t start; /* of a ring */
+    size_t start; /* index of a ring's first point */
     bool ring, reversed;
 } path_order;
 
@@ -201,7 +202,7 @@ static path_order find_order(const camber_features *f, size_t polyline) {
     return order;
 }
 
-/* The polyline's point that is the k-th of its path. */
+/* Returns the index of the polyline's point that is the k-th of its path. */
 static size_t point_in_order(const path_order *order, size_t k) {
     const size_t last = order->count - 1;
     if (!order->ring)
@@ -215,7 +216,8 @@ static bool make_room(layout_maker *m, size_t count) {
            camber_grow(context, &m->path.along, &m->path_capacity[1], count, sizeof *m->path.along);
 }
 
-/* Reads a polyline into the path, in px from its first point. *reversed: it runs the other way. */
+/* Reads a polyline into the path, in px from its first point. *reversed: the path runs in the opposite direction to the
+ * polyline. */
 static camber_status read_path(layout_maker *m, size_t polyline, bool *reversed) {
     const camber_features *f = m->layout->features;
     const size_t first = f->offsets[polyline], end = f->offsets[polyline + 1];
@@ -361,7 +363,7 @@ static camber_status anchor_polygon(layout_maker *m, const thing *t, size_t firs
     return status == CAMBER_OK ? anchor_point(m, t, place) : status;
 }
 
-/* An outer ring stands before its holes. */
+/* An outer ring is stored before its holes. */
 static camber_status anchor_areas(layout_maker *m, const thing *t) {
     const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;
@@ -375,7 +377,7 @@ static camber_status anchor_areas(layout_maker *m, const thing *t) {
     return status;
 }
 
-/* Anchors each point, or the first one of each line. */
+/* Anchors each point, or the first point of each line. */
 static camber_status anchor_points(layout_maker *m, const thing *t, bool each) {
     const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;
@@ -402,7 +404,7 @@ static double farthest(const camber_box *box) {
     return fmax(fmax(fabs(box->x0), fabs(box->x1)), fmax(fabs(box->y0), fabs(box->y1)));
 }
 
-/* How far from its anchor a label of the form reaches that pushes others aside, px. */
+/* Returns how far from its anchor a label of the form can collide with others, px. */
 static double reach_of(const camber_label_layout *l, uint32_t form_index) {
     const camber_label_form *form = l->forms + form_index;
     const camber_label_rule *rule = l->rules + form->rule;
@@ -416,7 +418,7 @@ static double reach_of(const camber_label_layout *l, uint32_t form_index) {
         const camber_box box = camber_label_icon_box(l, &c, false, 0);
         reach = fmax(reach, farthest(&box) + fabs(rule->icon_translate_px[0]) + fabs(rule->icon_translate_px[1]));
     }
-    /* A turned box reaches farther, and what is near the camera is larger. */
+    /* A turned box reaches farther, and labels near the camera are larger. */
     return (l->lens.pitched ? 3.0 : 1.5) * reach + CAMBER_LABEL_MARGIN_PX * l->view->ratio;
 }
 

@@ -10,11 +10,10 @@
 #include "style/symbol.h"
 
 #define CAMBER_NO_PATH UINT32_MAX
-/* Labels push each other aside up to this far outside of the picture, CSS px, so that they seldom change while a map
- * moves. */
+/* Labels collide up to this far outside the picture, in CSS px, so that they seldom change while a map moves. */
 #define CAMBER_LABEL_MARGIN_PX 100.0
 
-/* How a layer shows labels. Those that agree in all but what they say share a rule. Lengths are device px or em. */
+/* How a layer shows labels. Labels that differ only in words and icons share a rule. Lengths are device px or em. */
 typedef struct camber_label_rule {
     camber_symbol symbol; /* without text, icon and sort key */
     uint32_t text_look, icon_look;
@@ -22,7 +21,7 @@ typedef struct camber_label_rule {
     bool text_flat, icon_flat;
     double text_px; /* size of the text */
     double text_translate_px[2], icon_translate_px[2];
-    double text_turn, icon_turn; /* radians: by the style, and with the bearing where the map turns them */
+    double text_turn, icon_turn; /* radians, as the style says */
     bool text_by_map, icon_by_map;
     /* The anchors of a text, in the order in which they are tried, and their offsets. */
     camber_text_anchor anchors[CAMBER_SYMBOL_ANCHORS_MAX];
@@ -43,28 +42,28 @@ typedef struct camber_label_form {
     uint32_t rule;
     uint32_t first_run;    /* of the text */
     camber_text *text;     /* NULL: none */
-    camber_text *vertical; /* the same, downwards. NULL: it is not written so */
+    camber_text *vertical; /* the same text, written downwards. NULL: none */
     const camber_sprite_image *icon;
     double sort_key;
-    double weight; /* of two with one sort key the lighter comes first */
+    double weight; /* of two labels with equal sort keys, the lighter is placed first */
     uint64_t hash; /* of its words and its icon */
 } camber_label_form;
 
 /* A line that labels follow, px of the map's plane. */
 typedef struct camber_label_line {
-    size_t first, count; /* of line_points */
+    size_t first, count; /* range of line_points */
     bool reversed;       /* it runs from its last point to its first */
 } camber_label_line;
 
 /* A form at an anchor. */
 typedef struct camber_label_candidate {
     uint32_t form, feature;
-    uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it stands on */
+    uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it is on */
     double x, y;            /* of the anchor, px of the plane */
-    uint64_t rank;          /* which of two that are alike comes first: a hash of its place and words */
+    uint64_t rank;          /* decides between equal candidates: a hash of its position and words */
     /* Placement fills these in. */
     bool shows_text, shows_icon, vertical;
-    uint8_t anchor; /* of the rule's */
+    uint8_t anchor; /* which of the rule's anchors */
     camber_box box; /* around what is shown */
 } camber_label_candidate;
 
@@ -99,10 +98,10 @@ typedef struct camber_label_layout {
     struct camber_label_words *words; /* texts that were shaped (label_text.c) */
 } camber_label_layout;
 
-/* Frees what a failure left, too. */
+/* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
-/* Finds the candidates of a view. The caller has filled in what the layout reads. Returns CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_LIMIT. */
+/* Finds the candidates of a view. The caller has set context, features, view, fonts and sprites. Returns
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);
 
 /* ---- Forms (label_forms.c, label_text.c) ---- */
@@ -111,10 +110,10 @@ camber_status camber_label_layout_make(camber_label_layout *layout);
 #define CAMBER_NO_FORM UINT32_MAX
 camber_status camber_label_form_make(camber_label_layout *layout, const camber_layer_look *look,
                                      const camber_feature_class *class, uint32_t *form);
-/* Shapes a form's texts, or finds that this was done. */
+/* Shapes a form's texts, or takes them from the table if they were shaped before. */
 camber_status camber_label_text_make(camber_label_layout *layout, const camber_symbol *symbol, camber_label_form *form);
 void camber_label_words_free(camber_label_layout *layout);
-/* Finds an image, and tells if it is missing. NULL: it is. */
+/* Finds an image. NULL: it is missing, and a warning says so. */
 const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name);
 
 static inline const camber_label_rule *camber_label_rule_of(const camber_label_layout *layout,
@@ -124,62 +123,64 @@ static inline const camber_label_rule *camber_label_rule_of(const camber_label_l
 
 /* ---- Parts of labels about their anchors (label_parts.c) ---- */
 
-/* How a part stands about the anchor of a candidate: a point (u, v) of the part, px, goes to
+/* Where a part of a label is drawn: a point (u, v) of the part, in px from the candidate's anchor, is drawn at
  * (x + xx * u + xy * v, y + yx * u + yy * v). */
 typedef struct camber_label_frame {
     double x, y, xx, xy, yx, yy;
-    bool flat; /* px of the plane, else of the picture */
+    bool flat; /* that point is in px of the plane; otherwise of the picture */
 } camber_label_frame;
 
-/* How near the camera is at a candidate's anchor: 1 at the picture's centre. 0: nothing is shown there. */
+/* Returns how near the camera is to a candidate's anchor: 1 at the picture's centre. 0: no label is shown there. */
 double camber_label_nearness(const camber_label_layout *layout, const camber_label_candidate *c);
 camber_label_frame camber_label_text_frame(const camber_label_layout *layout, const camber_label_candidate *c);
 camber_label_frame camber_label_icon_frame(const camber_label_layout *layout, const camber_label_candidate *c);
-/* The box of a text that has one of its rule's anchors, px about the candidate's anchor. */
+/* Returns the box of a text that is placed by this one of its rule's anchors, in px from the candidate's anchor. */
 camber_box camber_label_text_box(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
                                  size_t anchor);
-/* How far such a text is moved from where it is shaped, px. */
+/* Computes how far this text is moved from the position in which it was shaped, in px. */
 void camber_label_text_shift(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
                              size_t anchor, double shift_px[2]);
-/* The box of the icon, without padding. vertical, anchor: those of the text that it fits. */
+/* Returns the box of the icon, without padding. vertical and anchor describe the text that the icon is fitted to. */
 camber_box camber_label_icon_box(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
                                  size_t anchor);
-/* The bounds in the picture of a box in a frame. false: it is not in front of the camera. */
+/* Computes the bounds in the picture of a box in a frame. false: the box is not in front of the camera. */
 bool camber_label_bounds(const camber_label_layout *layout, const camber_label_frame *frame, const camber_box *box,
                          camber_box *bounds);
 
 /* ---- Texts along lines (label_along.c) ---- */
 
-/* The part of a line that a text takes, in the order of the text; px of the plane or the picture. */
+/* The part of a line that a text covers, in the order of the text, in px of the plane or the picture. */
 typedef struct camber_label_track {
     camber_context *context;
-    double *points; /* threes: x, y and the distance from the anchor, negative before it */
+    double *points; /* triples: x, y and the distance from the anchor, which is negative before it */
     size_t count, capacity;
     double side; /* 1: the text runs with the line; -1: against it */
     bool vertical, flat;
     double first, last; /* distances of the first and the last glyph */
     double across;      /* how far to the line's right the text is */
-    double shift;       /* how far along it */
-    double size;        /* px an em */
+    double shift;       /* how far along the line the text is moved */
+    double size;        /* px per em */
 } camber_label_track;
 
 typedef struct camber_track_point {
-    double x, y, cosine, sine; /* and its direction */
+    double x, y, cosine, sine; /* a point, and the direction of the line there */
 } camber_track_point;
 
-/* Finds the way of a candidate's text. *fits is false if the line ends before. Returns CAMBER_ERROR_MEMORY. */
+/* Finds the track of a candidate's text. *fits is false if the line is too short. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_label_track_find(const camber_label_layout *layout, const camber_label_candidate *c,
                                       camber_label_track *track, bool *fits);
-/* The point at a distance. */
+/* Returns the point at a distance. */
 camber_track_point camber_label_track_point(const camber_label_track *track, double distance);
-/* Where a glyph's cluster begins to turn: the distance of its middle, em, and the cluster's end. */
+/* Returns the distance of the middle of the cluster that begins with glyph first, in em; the cluster is turned about
+ * it. *end is the cluster's end. */
 double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end);
 
 /* ---- Placement and items ---- */
 
 /* Decides which candidates are shown. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_label_place_all(camber_label_layout *layout);
-/* Makes the items of what is shown. The looks move to the labels. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Makes the items of the labels that are shown. The layout's looks are moved to labels. Returns CAMBER_ERROR_MEMORY,
+ * CAMBER_ERROR_LIMIT. */
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels);
 
 #endif

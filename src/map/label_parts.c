@@ -1,7 +1,7 @@
-/* Where the text and the icon of a label are about its anchor.
+/* Finds where the text and the icon of a label are, relative to its anchor.
  *
- * Input: a candidate. Output: boxes in px about the anchor, as if nothing were turned, and the frame that turns them,
- * brings them to the anchor, and makes them smaller with the distance from the camera. */
+ * Input: a candidate. Output: boxes in px from the anchor, as if nothing were turned, and the frame that turns them,
+ * moves them to the anchor, and makes them smaller with their distance from the camera. */
 #include "map/label_layout.h"
 
 #include <math.h>
@@ -23,8 +23,8 @@ double camber_label_nearness(const camber_label_layout *layout, const camber_lab
 
 /* ---- Frames ---- */
 
-/* A frame about a point of the plane whose u runs along a direction, which is one of the plane too. by_plane: else u is
- * turned by the angle alone. */
+/* Makes the frame at a point of the plane. Its u axis runs along a direction of the plane, turned by an angle.
+ * direction NULL: the u axis is only turned by the angle. */
 static camber_label_frame make_frame(const camber_label_layout *layout, const double plane[2], const double *direction,
                                      double turn, bool flat) {
     camber_label_frame frame = {.x = plane[0], .y = plane[1], .flat = flat};
@@ -96,7 +96,8 @@ bool camber_label_bounds(const camber_label_layout *layout, const camber_label_f
 
 /* ---- Text ---- */
 
-/* 0: the anchor is at the left or the top, 0.5: in the middle, 1: at the right or the bottom. */
+/* Finds where in a text's box the anchor is, along each axis: 0 at the left or the top, 0.5 in the middle, 1 at the
+ * right or the bottom. */
 static void find_share(camber_text_anchor anchor, double share[2]) {
     share[0] = share[1] = 0.5;
     switch (anchor) {
@@ -137,7 +138,7 @@ void camber_label_text_shift(const camber_label_layout *layout, const camber_lab
     shift_px[1] = (vertical && !rule->variable ? offset[0] : offset[1]) * em;
     if (!rule->variable)
         return;
-    /* The padding comes between the anchor and the text. */
+    /* The padding is between the anchor and the text. */
     const camber_box box = shaped_box(text_of(layout, c, vertical), em);
     const double *padding = rule->symbol.text.padding_px;
     double share[2];
@@ -157,7 +158,7 @@ camber_box camber_label_text_box(const camber_label_layout *layout, const camber
 
 /* ---- Icons ---- */
 
-/* How much of the ranges is between two px of an image. */
+/* Returns the length of the ranges between two positions on an axis of an image. */
 static double sum_ranges(float (*ranges)[2], size_t count, double low, double high, double size) {
     if (count == 0)
         return fmin(fmax(high, 0.0), size) - fmin(fmax(low, 0.0), size);
@@ -167,7 +168,9 @@ static double sum_ranges(float (*ranges)[2], size_t count, double low, double hi
     return sum;
 }
 
-/* One axis of an image that is fitted to a text: the whole image, if its content goes from low to high. */
+/* One axis of an image that is fitted to a label's text. fit turns the edges of its content into the edges of the whole
+ * image.
+ */
 typedef struct fit_axis {
     float (*ranges)[2];
     size_t count;
@@ -194,7 +197,7 @@ static camber_box fitted_box(const camber_label_layout *layout, const camber_lab
     const camber_sprite_image *image = layout->forms[c->form].icon;
     const double ratio = layout->view->ratio, scale = s->icon_size;
     const double width = image->width / image->pixel_ratio * ratio, height = image->height / image->pixel_ratio * ratio;
-    /* A text that has one of several anchors takes the icon with it when it moves. */
+    /* If a text may have one of several anchors, the icon moves with it. */
     double moved[2] = {0.0, 0.0};
     camber_box text = camber_label_text_box(layout, c, vertical, anchor);
     if (rule->variable) {

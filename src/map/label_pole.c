@@ -1,20 +1,20 @@
 /* Finds the point of a polygon that is farthest from its edges: its pole of inaccessibility, for labels of areas.
  *
  * Input: rings. Output: the point, within a precision. Main idea (polylabel, by Vladimir Agafonkin): squares cover the
- * polygon. The one that may hold the farthest point is cut into four, until none may hold a point that is farther by
- * more than the precision. */
+ * polygon. The square that may contain the farthest point is cut into four, until no square can contain a point that is
+ * farther by more than the precision. */
 #include "map/label_anchors.h"
 
 #include <math.h>
 
-/* A side of the polygon's box has no more squares at first than this; and the edges that are looked at in all, after
- * which the best point so far must do. */
+/* The most squares along a side of the polygon's box at first; and the most edges to look at, after which the best
+ * point so far is used. */
 enum { MOST_SQUARES_A_SIDE = 64, MOST_EDGES = 1 << 26 };
 
 typedef struct square {
     double x, y, half;
-    double distance; /* of its middle from the edges; negative: it is outside */
-    double most;     /* of any of its points */
+    double distance; /* from its middle to the edges; negative: the middle is outside */
+    double most;     /* an upper bound of the distance of any of its points */
 } square;
 
 typedef struct pole_search {
@@ -22,9 +22,9 @@ typedef struct pole_search {
     const double *points;
     const size_t *offsets;
     size_t ring_count;
-    square *heap; /* the one with the most comes first */
+    square *heap; /* the square with the largest `most` is first */
     size_t count, capacity;
-    size_t edges; /* that were looked at */
+    size_t edges; /* how many edges were looked at */
     double best;  /* distance of the best point so far */
     double precision;
 } pole_search;
@@ -40,7 +40,8 @@ static double square_distance(const double *a, const double *b, double x, double
     return across * across / length;
 }
 
-/* The distance of a point from the edges, negative outside. Stops at an edge that is nearer than `enough`. */
+/* Returns the distance of a point from the edges, which is negative outside. Stops at an edge that is nearer than
+ * `enough`. */
 static double distance_of(pole_search *s, double x, double y, double enough) {
     const double bound = enough > 0.0 ? enough * enough : -1.0;
     bool inside = false;
@@ -58,8 +59,8 @@ static double distance_of(pole_search *s, double x, double y, double enough) {
     return least <= bound ? -INFINITY : inside ? sqrt(least) : -sqrt(least);
 }
 
-/* Looks at a square. One whose middle is no better, and that cannot hold a point that is better by the precision, has
- * no distance. */
+/* Measures a square. If its middle is no better than the best point, and no point in it can be better by more than the
+ * precision, its distance is infinite. */
 static square look(pole_search *s, double x, double y, double half) {
     const double reach = half * 1.4142135623730951;
     square made = {.x = x, .y = y, .half = half};
@@ -96,7 +97,7 @@ static square pop(pole_search *s) {
     return top;
 }
 
-/* The centroid of the outer ring. */
+/* Measures the centroid of the outer ring. */
 static square first_guess(pole_search *s) {
     double area = 0.0, x = 0.0, y = 0.0;
     const double *origin = s->points + 2 * s->offsets[0];

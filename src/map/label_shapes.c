@@ -12,12 +12,12 @@
 
 /* How far an outline's segments may be from its curves, px. */
 static const double TOLERANCE_PX = 1.0 / 32.0;
-/* A halo's edge fades over so many times its blur, as the distances of glyphs in MapLibre do. */
+/* A halo's edge fades over its blur times this, as in MapLibre, whose glyphs are distances. */
 static const float BLUR_SCALE = 1.19f;
-/* As wide as strokes may be. */
+/* The largest width of a stroke. */
 static const float WIDEST_PX = 16384.0f;
 
-/* Rings while they are gathered. */
+/* Rings that are being collected. */
 typedef struct rings {
     camber_context *context;
     float *points;
@@ -50,7 +50,8 @@ static tilt tilt_of(const camber_view *view) {
     return (tilt){true, 0.5 * view->width, 0.5 * view->height, p.cosine, p.fall};
 }
 
-/* Moves a point of the picture to where the plane has it; p: px, x and y. It may be beyond what the camera sees. */
+/* Moves a point of the picture to the point of the plane that is seen there. p: x and y in px. The result may be beyond
+ * what the camera sees. */
 static void unproject(const tilt *t, float p[2]) {
     const double y = (double)p[1] - t->y, away = fmax(t->cosine + t->fall * y, 1e-3);
     const double plane_y = y / away;
@@ -58,7 +59,7 @@ static void unproject(const tilt *t, float p[2]) {
     p[1] = (float)(t->y + plane_y);
 }
 
-/* Finds where the plane has the point u, v of an item. t: NULL if the item is in the plane. */
+/* Finds the point of the plane at which the point u, v of an item is drawn. t: NULL if the item is in the plane. */
 static void find_point(const camber_label_item *item, const tilt *t, float u, float v, float p[2]) {
     p[0] = item->x + item->xx * u + item->xy * v;
     p[1] = item->y + item->yx * u + item->yy * v;
@@ -70,7 +71,7 @@ static void add_point(rings *r, const camber_label_item *item, const tilt *t, fl
     find_point(item, t, u, v, r->points + 2 * r->point_count++);
 }
 
-/* Adds the rings of an outline. Those of one row are one area. */
+/* Adds the rings of an outline. Rings of one row form one area. */
 static camber_status add_outline(rings *r, const camber_outline *outline, const camber_label_item *item,
                                  const tilt *t) {
     for (size_t i = 0; i < outline->ring_count; i++) {
@@ -113,8 +114,8 @@ static camber_status add_frame(rings *r, const camber_icon_form *form, const cam
     return CAMBER_OK;
 }
 
-/* Lays the image, whose pointer is set later, into the frame. In a picture with a pitch the frame is a quadrangle of
- * the plane, and the image the rectangle with the same middle axes. */
+/* Places the image in the frame; the fill's pointer to it is set later. In a picture with a pitch, the frame is a
+ * quadrangle in the plane, and the image is the rectangle with the same middle axes. */
 static void place_image(const camber_icon_form *form, const camber_label_item *item, const tilt *t,
                         const camber_label_look *look, camber_fill *fill) {
     const float half_x = 0.5f + 1.0f / (float)form->width, half_y = 0.5f + 1.0f / (float)form->height;
@@ -170,7 +171,7 @@ typedef struct shape_maker {
     size_t *form_of; /* by icon */
 } shape_maker;
 
-/* NULL: the item is drawn in the plane as it is. */
+/* Returns NULL if the item is drawn in the plane as it is. */
 static const tilt *tilt_for(const shape_maker *m, const camber_label_item *item) {
     return m->tilt.pitched && !m->labels->looks[item->look].flat ? &m->tilt : NULL;
 }

@@ -1,4 +1,4 @@
-/* The shapes of labels: what two meshes hold and the passes that draw them. */
+/* The shapes of labels: the polylines of two meshes, and the passes that draw them. */
 #ifndef CAMBER_MAP_LABEL_SHAPES_H
 #define CAMBER_MAP_LABEL_SHAPES_H
 
@@ -14,36 +14,36 @@ typedef struct camber_label_range {
 
 typedef struct camber_label_shapes {
     camber_context *context;
-    camber_polylines *texts, *icons; /* rings in px; their rows are looks, and the icons' numbers. NULL: none */
-    camber_stroke *strokes;          /* by look: of the halos */
+    camber_polylines *texts, *icons; /* rings in px; rows are looks in texts, numbers of icons in icons. NULL: none */
+    camber_stroke *strokes;          /* by look: the strokes of halos */
     camber_fill *fills;              /* by look, then by icon */
-    camber_paint *halos, *paints;    /* by look; paints of icons follow those of looks */
+    camber_paint *halos, *paints;    /* by look; paints of icons follow the paints of looks */
     size_t look_count, icon_count;
     camber_icon_forms forms;
     camber_label_range *ranges; /* range_count of them, in drawing order */
     size_t range_count;
 } camber_label_shapes;
 
-/* Makes the shapes of labels in the picture. camber_label_shapes_free frees also what a failure left.
+/* Makes the shapes of labels in the picture. Call camber_label_shapes_free even after a failure.
  * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 camber_status camber_label_shapes_make(const camber_labels *labels, const camber_view *view, camber_fonts *fonts,
                                        camber_label_shapes *shapes);
 void camber_label_shapes_free(camber_label_shapes *shapes);
 
-/* Tessellates the shapes into the mesh's companion, and icons into the companion's companion. Without labels both are
- * empty. Returns the errors of camber_mesh_tessellate. */
+/* Tessellates the shapes into the mesh's companion, and icons into the companion's companion. Without labels both
+ * companions are empty. Returns the errors of camber_mesh_tessellate. */
 camber_status camber_label_shapes_tessellate(const camber_label_shapes *shapes, camber_mesh *mesh,
                                              camber_method method);
 
-/* The mesh of a pass: that of the network, or a companion. */
+/* The mesh that a pass draws: the network's, or a companion. */
 typedef enum camber_label_mesh {
     CAMBER_MESH_NETWORK = 0,
     CAMBER_MESH_TEXTS,
     CAMBER_MESH_ICONS,
 } camber_label_mesh;
 
-/* Writes the passes of a range, whose meshes are to be set, and which mesh each needs. Returns their number,
- * CAMBER_LABEL_PASSES at most. */
+/* Writes the passes of a range, and which mesh each needs; the caller sets their meshes. Returns how many passes there
+ * are, at most CAMBER_LABEL_PASSES. */
 enum { CAMBER_LABEL_PASSES = 3 };
 size_t camber_label_shapes_passes(const camber_label_shapes *shapes, const camber_label_range *range,
                                   camber_pass passes[CAMBER_LABEL_PASSES],

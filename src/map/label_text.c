@@ -1,11 +1,11 @@
 /* Shapes the texts of labels, each wording once.
  *
- * Input: a symbol. Output: its text, and the same text downwards if it is written so. Main idea: classes differ in more
- * than names, so one street's name is asked for again and again; a table keeps what was shaped. */
+ * Input: a symbol. Output: its text, and the same text written downwards if it may be. Main idea: classes differ in
+ * more than names, so the name of one street is needed again and again; a table keeps the texts that were shaped. */
 #include "map/label_layout.h"
 #include "style/unicode.h"
 
-/* A text, and what it was made of. */
+/* A text, and the key of what it was made from. */
 typedef struct word {
     uint64_t hash;
     char *key; /* bytes */
@@ -18,14 +18,14 @@ struct camber_label_words {
     size_t count, capacity;
     uint32_t *slots; /* numbers + 1 by hash; 0: free. slot_count is a power of two */
     size_t slot_count;
-    char *key; /* of the text in hand */
+    char *key; /* of the current text */
     size_t key_size, key_capacity;
     camber_arena arena; /* keys */
     camber_text_run *runs;
     size_t run_capacity;
 };
 
-/* Keys take so much memory at most. */
+/* The most memory for keys. */
 #define KEY_LIMIT ((size_t)256 << 20)
 
 void camber_label_words_free(camber_label_layout *layout) {
@@ -64,7 +64,7 @@ static bool put_text(camber_context *context, struct camber_label_words *words, 
     return put(context, words, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Writes all that a text depends on. */
+/* Writes a text's key: everything that the text depends on. */
 static bool write_key(camber_context *context, struct camber_label_words *words, const camber_text_desc *desc) {
     const double lengths[] = {(double)desc->max_width_em,
                               (double)desc->line_height_em,
@@ -114,7 +114,7 @@ static bool widen(camber_context *context, struct camber_label_words *words) {
     return true;
 }
 
-/* Gives the text of a desc: the one that is in the table, or a new one. NULL: nothing would be seen of it. */
+/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. */
 static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text) {
     camber_context *context = layout->context;
     struct camber_label_words *words = layout->words;
@@ -150,7 +150,7 @@ const camber_sprite_image *camber_label_find_image(const camber_label_layout *la
 
 /* ---- Texts of symbols ---- */
 
-/* Whether the script of a character may be written downwards, its characters upright. */
+/* Whether the script of a character may be written downwards with upright characters. */
 static bool is_written_down(uint32_t code) {
     return (code >= 0x1100 && code <= 0x11ff) || (code >= 0x2e80 && code <= 0xa4cf) ||
            (code >= 0xa960 && code <= 0xa97f) || (code >= 0xac00 && code <= 0xd7ff) ||
@@ -190,13 +190,14 @@ static bool make_runs(camber_label_layout *layout, const camber_symbol *symbol) 
             .align = section->align,
             .image_width_em = image ? (float)(image->width / image->pixel_ratio * section->scale / em) : 0.0f,
             .image_height_em = image ? (float)(image->height / image->pixel_ratio * section->scale / em) : 0.0f};
-        if (section->image && !image) /* a gap is not wanted */
+        if (section->image && !image) /* a missing image leaves no gap */
             words->runs[i].text = "";
     }
     return true;
 }
 
-/* The side that is on top after a quarter turn: texts that go down are anchored as if they were turned. */
+/* Returns the side that is on top after a quarter turn: texts that run downwards are anchored as if they were turned.
+ */
 static camber_text_anchor turn_anchor(camber_text_anchor anchor) {
     switch (anchor) {
     case CAMBER_ANCHOR_LEFT: return CAMBER_ANCHOR_TOP;

@@ -1,8 +1,7 @@
-/* Labels: which texts and icons are shown in a view, and where each of their glyphs stands.
+/* Labels: which texts and icons are shown in a view, and where each of their glyphs is.
  *
  *     features, view -> label_layout (texts and icons, anchors) -> placement (what is shown) -> items
- *     items -> label_shapes: rings and passes
- */
+ *     items -> label_shapes: rings and passes */
 #ifndef CAMBER_MAP_LABELS_H
 #define CAMBER_MAP_LABELS_H
 
@@ -15,21 +14,21 @@ typedef struct camber_label_look {
     camber_color color; /* straight; alpha includes all opacities. Of an icon without sdf: white, with its opacity */
     camber_color halo_color;
     float halo_width_px, halo_blur_px; /* device px */
-    bool flat;                         /* it lies on the map: a pitch tilts it */
+    bool flat;                         /* it is flat on the map, so a pitch tilts it */
 } camber_label_look;
 
 /* A glyph or an icon of a label that is shown. */
 typedef struct camber_label_item {
-    uint32_t glyph; /* of the fonts; CAMBER_NO_GLYPH: an icon */
+    uint32_t glyph; /* its number in the fonts; CAMBER_NO_GLYPH: an icon */
     const camber_sprite_image *icon;
-    uint32_t look; /* index of the labels' looks */
+    uint32_t look; /* index into the labels' looks */
     uint32_t label;
-    /* From em (of an icon: from shares of its width and height) to device px of the picture:
-     * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, px are of the map's plane; else they are of
-     * the picture as it is seen, whatever the pitch. */
+    /* Maps em (for an icon: fractions of its width and height) to device px of the picture:
+     * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, these are px of the map's plane; otherwise
+     * of the picture as it is seen, whatever the pitch. */
     float x, y, xx, xy, yx, yy;
-    /* An icon that is fitted to a text keeps the parts of its image that must not be stretched: a px of these is so
-     * many px of the picture. 0: the icon is not fitted. */
+    /* For an icon that is fitted to a text: how many px of the picture a px of its image takes up in the parts that
+     * must not be stretched. 0: the icon is not fitted. */
     float unstretched_px;
 } camber_label_item;
 
@@ -59,8 +58,8 @@ typedef struct camber_labels {
 } camber_labels;
 
 /* Places the labels of a view. The result depends neither on the number of threads nor on the order of the features.
- * fonts may make new outlines. sprites, which note missing names, may be NULL. Free it with camber_labels_free, also
- * after a failure. Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
+ * fonts may make new outlines. sprites records missing names, and may be NULL. Call camber_labels_free even after a
+ * failure. Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 camber_status camber_labels_place(const camber_features *features, const camber_view *view, camber_fonts *fonts,
                                   camber_sprites *sprites, camber_labels *labels);
 void camber_labels_free(camber_labels *labels);

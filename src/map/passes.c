@@ -53,7 +53,7 @@ static bool layer_draws(const camber_mesh_rows *rows, const camber_plan_layer *l
     return drawn;
 }
 
-/* Whether a range of labels is below a layer of the plan. Beyond the last one, all are. */
+/* Whether a range of labels is below a layer of the plan. After the last layer, all ranges are. */
 static bool are_below(const camber_mesh_rows *rows, size_t range, size_t layer) {
     return layer == rows->plan->layer_count ||
            rows->labels->ranges[range].layer < (size_t)(rows->plan->layers[layer].look.layer - rows->style_layers);
@@ -62,7 +62,7 @@ static bool are_below(const camber_mesh_rows *rows, size_t range, size_t layer) 
 /* Groups layers into runs. Consecutive opaque layers whose polylines are adjacent are drawn by one pass. A translucent
  * layer has its own pass, because it is flattened separately. A layer of areas also has its own, because equal fills of
  * two layers would otherwise become one path; if it has an opacity, its outline is in the same pass. Fills of the whole
- * picture, and labels, come between. */
+ * picture and labels are separate runs between them. */
 static size_t find_runs(const camber_mesh_rows *rows, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = rows->plan;
     size_t count = 0, fill = 0, range = 0, counted = plan->layer_count;

@@ -2,19 +2,19 @@
  *
  * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
  * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
- * Each label in turn takes its shapes in the picture, unless others have them. */
+ * Each label in turn takes up its shapes in the picture, unless earlier labels are in the way. */
 #include "map/collision.h"
 #include "map/label_layout.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Cells of the grid, CSS px. */
+/* Side of a cell of the grid, CSS px. */
 static const double CELL_PX = 32.0;
-/* Texts along lines are no lower than this for others, em. */
+/* The least height of a text along a line when labels collide, em. */
 static const double LEAST_HEIGHT_EM = 10.0 / 24.0;
 
-/* A label whose words stand along a line, so that they are not said again too near. */
+/* A label along a line. It is recorded so that its words are not repeated too near to it. */
 typedef struct said {
     uint64_t key;
     double x, y;
@@ -25,7 +25,7 @@ typedef struct placer {
     camber_label_layout *layout;
     camber_collision grid;
     camber_label_track track;
-    camber_obstacle *shapes; /* of the text in hand, then of its icon */
+    camber_obstacle *shapes; /* of the current text, then of its icon */
     size_t shape_count, shape_capacity;
     said *said;
     size_t said_count, said_capacity;
@@ -87,7 +87,7 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
     return list;
 }
 
-/* ---- Words that were said near ---- */
+/* ---- Words that were shown nearby ---- */
 
 static uint64_t said_key(uint64_t words, double x, double y, double distance) {
     const int64_t cell[2] = {(int64_t)floor(x / distance), (int64_t)floor(y / distance)};
@@ -138,7 +138,7 @@ static camber_status add_shape(placer *p, camber_obstacle shape) {
     return CAMBER_OK;
 }
 
-/* A label that avoids edges does not cross those of the picture. */
+/* Labels that avoid edges do not cross the edges of the picture. */
 static bool crosses_edge(const camber_view *view, const camber_obstacle *shape) {
     return shape->x0 < 0.0f || shape->y0 < 0.0f || shape->x1 > (float)view->width || shape->y1 > (float)view->height;
 }
@@ -170,7 +170,7 @@ static camber_status add_box(placer *p, const camber_label_frame *frame, camber_
 
 /* ---- Text ---- */
 
-/* Circles along the line, as far from each other as makes them meet well. */
+/* Adds circles along the line, at such distances that collisions are found well. */
 static camber_status add_circles(placer *p, const camber_label_candidate *c, const camber_text *text) {
     const camber_label_rule *rule = camber_label_rule_of(p->layout, c);
     const camber_label_track *track = &p->track;
@@ -210,7 +210,7 @@ static camber_status try_along(placer *p, const camber_label_candidate *c, tried
     return status;
 }
 
-/* Tries one anchor. An icon that fits the text must be free with it. */
+/* Tries one anchor. An icon that is fitted to the text must be free, too. */
 static camber_status try_anchor(placer *p, const camber_label_candidate *c, camber_symbol_overlap overlap,
                                 tried *text) {
     const camber_label_form *form = p->layout->forms + c->form;
@@ -235,7 +235,7 @@ static camber_status try_anchor(placer *p, const camber_label_candidate *c, camb
     return status;
 }
 
-/* Tries the anchors of a writing mode: at first where nothing is, then where the style lets labels overlap. */
+/* Tries the anchors of a writing mode: first without any overlap, then with the overlap that the style allows. */
 static camber_status try_mode(placer *p, const camber_label_candidate *c, tried *text) {
     const camber_label_rule *rule = camber_label_rule_of(p->layout, c);
     const camber_symbol_overlap allowed = rule->symbol.text.overlap;

@@ -223,7 +223,7 @@ typedef struct row_table {
 typedef struct plan_classes {
     uint32_t *rows;
     double *keys;
-    uint32_t *drawn; /* the classes that are none of labels, which have neither rows nor keys */
+    uint32_t *drawn; /* the classes, except those of labels, which have neither rows nor keys */
     size_t drawn_count;
 } plan_classes;
 
@@ -370,8 +370,8 @@ static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dash
     return &made->dash;
 }
 
-/* Returns the width at the whole zoom below, scaled with the map. Other engines draw dashes and patterns in that width
- * up to the next whole zoom. */
+/* Returns the width at the next lower integer zoom, scaled with the map. Other engines draw dashes and patterns in that
+ * width up to the next integer zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
@@ -458,7 +458,7 @@ static bool same_row(const camber_plan *plan, const camber_plan_set *set, const 
                                                       set->layer_count * sizeof *table->areas) == 0);
 }
 
-/* Adds the tuple's fills to those of the plan, at the same index as its paints. */
+/* Adds the tuple's fills to the plan's fills, at the same index as its paints. */
 static bool add_areas(camber_plan *plan, const camber_plan_set *set, const row_table *table) {
     camber_plan_patterns *p = &plan->patterns;
     if (!camber_plan_is_area(plan, set))
@@ -602,7 +602,7 @@ static camber_status match_dot(const camber_view *view, camber_plan *plan, cambe
     return rows->by_class.rows[at] == CAMBER_NO_ROW ? CAMBER_ERROR_MEMORY : CAMBER_OK;
 }
 
-/* Lists the classes that may be drawn. Those of labels may be many more. */
+/* Lists the classes that may be drawn. There may be many more classes of labels. */
 static camber_status list_drawn(const camber_features *features, plan_classes *classes) {
     if (!(classes->drawn = camber_alloc(features->context, features->class_count, sizeof *classes->drawn)))
         return CAMBER_ERROR_MEMORY;

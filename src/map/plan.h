@@ -24,15 +24,15 @@ typedef struct camber_plan_set {
 /* A part of a layer of the style. Lines and their borders share one geometry. */
 typedef enum camber_plan_part {
     CAMBER_PLAN_LINE = 0,
-    CAMBER_PLAN_BORDER,  /* of the line that is the next layer of the plan */
+    CAMBER_PLAN_BORDER,  /* border of the line that is the next layer of the plan */
     CAMBER_PLAN_AREA,    /* the inside of rings */
-    CAMBER_PLAN_OUTLINE, /* of the area that is the previous layer of the plan */
+    CAMBER_PLAN_OUTLINE, /* outline of the area that is the previous layer of the plan */
     CAMBER_PLAN_CIRCLES, /* dots at points, and at the corners of lines and outlines */
 } camber_plan_part;
 
 typedef struct camber_plan_layer {
     camber_layer_look look;
-    camber_layer_look below; /* at the whole zoom below, if the layer has dashes or a pattern */
+    camber_layer_look below; /* at the next lower integer zoom, if the layer has dashes or a pattern */
     float translate_px[2];
     size_t set;
     size_t slot; /* its position among the set's layers */
@@ -91,8 +91,8 @@ typedef struct camber_plan {
     camber_ramp *ramps; /* ramp_count: they refer to the style's stops */
     size_t ramp_count;
     bool has_arc_length; /* a paint has dashes, a gradient, a pattern or a trim */
-    /* How many dots a circle has: 2 if the style has circle strokes, the stroke's dot below the fill's, else 1. Each
-     * dot is a pair of its class. Sets without circles use only the last dot. */
+    /* How many dots a circle has: 2 if the style has circle strokes, the stroke's dot below the fill's, otherwise 1.
+     * Each dot is a pair of its class. Sets without circles use only the last dot. */
     size_t dot_count;
     bool has_corners;    /* circles are drawn at the corners of lines, so all corners are needed */
     uint32_t *pair_rows; /* pair_count */
@@ -116,16 +116,17 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
 void camber_plan_entries_free(camber_plan_entries *list);
 /* Returns a class as the style's expressions see it. */
 camber_feature_view camber_plan_view_of(const camber_features *features, const camber_feature_class *class);
-/* Whether features of the class come to the layer's filter: those of its source and source layer do. */
+/* Whether the layer's filter is applied to features of the class: it is if they are from its source and source layer.
+ */
 bool camber_plan_comes_to(const camber_features *features, const camber_style_layer *layer,
                           const camber_feature_class *class);
-/* Whether a layer takes features of the class at a zoom, which it may yet draw without width or colour. */
+/* Whether a layer takes features of the class at a zoom. It may still draw them without width or colour. */
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class);
-/* Whether a symbol layer takes them. A plan does not contain labels. */
+/* Whether a symbol layer takes features of the class. A plan does not contain labels. */
 bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class);
-/* Whether features of the class are drawn at any of the zooms (drawn.c). Labels are not. */
+/* Whether features of the class are drawn at any of the zooms (drawn.c). Labels do not count. */
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom);
 /* Finds the box of everything that is drawn at any of the zooms, in world coordinates. It extends past x = 1 if the box

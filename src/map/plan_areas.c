@@ -1,4 +1,4 @@
-/* Makes triangles of the areas that a plan draws, for meshes of one view.
+/* Makes triangles from the areas that a plan draws, for meshes of one view.
  *
  * Input: features, a plan and a view. Output: triangles in px of the picture, layer by layer. Main idea: consecutive
  * rings of a layer with the same fill are filled together, as the kernels fill them as one path. */

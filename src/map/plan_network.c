@@ -1,4 +1,4 @@
-/* Makes a network of the polylines that a plan draws, and projects on the host the lines that a camera sees.
+/* Makes a network from the polylines that a plan draws, and projects on the host the lines that a camera sees.
  *
  * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
  * if the picture is wider than the world, a polyline has several entries, one for each copy of the world. The network
@@ -200,7 +200,7 @@ static void count_set(const camber_features *features, const camber_plan_network
             continue;
         before = polyline;
         seen->points_in += camber_features_whole_count(features, polyline);
-        /* If a feature's first line is not visible, a later one counts for it. */
+        /* If a feature's first line is not visible, a later line counts for the feature. */
         const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
         seen->feature_count += count || feature == counted ? count : 1;
         counted = feature;

@@ -1,4 +1,4 @@
-/* The network of the polylines that a plan draws, and those of them that a camera sees, projected on the host. */
+/* The network of the polylines that a plan draws, and the lines of it that a camera sees, projected on the host. */
 #ifndef CAMBER_MAP_PLAN_NETWORK_H
 #define CAMBER_MAP_PLAN_NETWORK_H
 
@@ -19,8 +19,8 @@ double camber_plan_stroke_reach(const camber_stroke *stroke);
 /* Returns the largest reach of the plan's strokes, including the translation. */
 double camber_plan_reach(const camber_plan *plan);
 /* Returns the step of networks for pictures of one zoom: 1/4096 px. If the sides of 4096 px pictures are at whole px of
- * the world, each point then has exactly the same position in all of them, whatever else is in their networks, because
- * floats hold it exactly. */
+ * the world, each point then has exactly the same position in all of these pictures, whatever else is in their
+ * networks, because floats hold it exactly. */
 static inline double camber_plan_network_step(const camber_view *view) {
     return 1.0 / (4096.0 * view->scale_px);
 }

@@ -48,8 +48,8 @@ static camber_color blend_over(camber_color top, camber_color below) {
                           (top.b * top.a + below.b * rest) / a, a};
 }
 
-/* Images are placed on the map from the world's north-western corner, in their own size at the whole zoom below. Up to
- * the next whole zoom they grow with the map. */
+/* Images are repeated over the map from the world's north-western corner, at their natural size at the next lower
+ * integer zoom. Up to the next integer zoom they grow with the map. */
 void camber_plan_fill_place(camber_plan_fill *placed, const camber_view *view) {
     const camber_sprite_image *image = placed->image;
     camber_fill *fill = &placed->fill;

@@ -1,8 +1,8 @@
 /* The fonts that labels are drawn with.
  *
  * Input: folders of fonts, and the style's glyphs, a template of file names with {fontstack} and {range}. Output: fonts
- * that belong to a set of features. Main idea: the style's own glyphs come first, as browsers draw them; fonts of this
- * machine have the rest. */
+ * that belong to a set of features. Main idea: the style's own glyphs are used first, as in browsers; fonts on this
+ * machine draw the other characters. */
 #include "camber_text.h"
 #include "features/features.h"
 #include "style/style.h"
@@ -14,8 +14,8 @@
 typedef struct glyph_files {
     camber_context *context;
     char *folder; /* ends with / */
-    char *name;   /* within the folder, with {fontstack} and {range} */
-    char *bytes;  /* of the last range */
+    char *name;   /* its template within the folder, with {fontstack} and {range} */
+    char *bytes;  /* contents of the last range */
 } glyph_files;
 
 static void free_files(glyph_files *files) {
@@ -38,7 +38,7 @@ static char *fill_in(camber_context *context, const char *text, const char *name
     return made;
 }
 
-/* Whether a name leads out of its folder: names of fonts come from a style, too. */
+/* Whether a name leads out of its folder. It is checked because a style also chooses the names of fonts. */
 static bool leads_up(const char *name) {
     for (const char *at = strstr(name, ".."); at; at = strstr(at + 1, ".."))
         if ((at == name || at[-1] == '/') && (at[2] == 0 || at[2] == '/'))
@@ -80,7 +80,7 @@ static camber_status split(glyph_files *files, const char *path) {
     return CAMBER_OK;
 }
 
-/* Finds the files of the style's glyphs; NULL: it has none here. */
+/* Finds the files of the style's glyphs. NULL: the style has none on this machine. */
 static camber_status find_files(camber_context *context, const char *template, const char *base_path,
                                 glyph_files **found) {
     camber_url url;
@@ -102,7 +102,7 @@ static camber_status find_files(camber_context *context, const char *template, c
         files->context = context;
         status = split(files, url.path);
     }
-    /* Files below the folder are in the root, too, since no link is followed there. */
+    /* Files below the folder are in the root, too, because no link below it is followed. */
     if (status == CAMBER_OK && !camber_file_is_reached(context, files->folder))
         status = camber_fail(context, CAMBER_ERROR_INPUT,
                              "style: /glyphs: %s is not in %s, and a style may name files only there; put it there",

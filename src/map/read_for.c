@@ -15,16 +15,17 @@
 static const double WIDEST_PX = 16384.0, LARGEST_REACH_PX = 65536.0;
 /* A margin for effects of the camera near a picture's edges, px. */
 static const double SLACK_PX = 64.0;
-/* How far outside of a picture the middle of a label may be that reaches into it; CSS px. */
+/* How far outside a picture the middle of a label may be if the label reaches into the picture, CSS px. */
 static const double LABEL_PX = 256.0;
 
 static double bound(const camber_style_layer *layer, camber_property_id property, double zoom) {
     return camber_style_layer_bound(layer, property, zoom);
 }
 
-/* Returns how far a layer reaches from its polylines at most, in px. For a line this is half of its width, its gap and
- * both rails, at the tips of its joins, and its offset, which joins also lengthen. A fill has the defaults of these
- * properties, which are enough for its outline. A circle reaches as far as its radius and its stroke. */
+/* Returns the largest distance from its polylines that a layer reaches, in px. For a line this is half of its width,
+ * its gap and both rails, at the tips of its joins, and its offset, which joins also lengthen. A fill has the defaults
+ * of these properties, which are enough for its outline. A circle's reach is the sum of its radius and its stroke's
+ * width. */
 static double reach_of(const camber_style_layer *layer, const camber_view *view) {
     const double zoom = camber_view_style_zoom(view), ratio = view->ratio;
     const double width = fmin(bound(layer, CAMBER_LINE_WIDTH, zoom) * ratio, WIDEST_PX);

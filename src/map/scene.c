@@ -177,7 +177,7 @@ static camber_status make_view_scene(camber_scene *scene, const camber_features 
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
-    status = make_labels(scene); /* first, since making the network may take the features' points */
+    status = make_labels(scene); /* first, because making the network may free the features' points */
     if (status != CAMBER_OK)
         return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
@@ -385,8 +385,8 @@ const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t 
     return scene->zoom->plan.strokes;
 }
 
-/* Moves fills of images to this window. A plan that is shared by several windows has placed them for a view at any
- * position. */
+/* Moves fills of images to this window. If several windows share the plan, it has placed them for a view at an
+ * arbitrary position. */
 static void move_fills(camber_scene *scene) {
     camber_plan_patterns *patterns = &scene->zoom->plan.patterns;
     camber_plan_patterns_move(patterns, &scene->view);
@@ -395,8 +395,8 @@ static void move_fills(camber_scene *scene) {
             scene->pair_passes.passes[i].fill = patterns->fills[fill++].fill;
 }
 
-/* Sets the meshes of passes. Those of labels are companions of the scene's mesh. camber_scene_tessellate has made them;
- * without it they are empty, and their passes draw nothing. */
+/* Sets the meshes of passes. Passes of labels draw companions of the scene's mesh, which camber_scene_tessellate fills.
+ * Without that call the companions are empty, and these passes draw nothing. */
 static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
     camber_mesh *meshes[] = {mesh, NULL, NULL};
     for (size_t i = 0; i < list->count; i++) {

@@ -23,7 +23,7 @@ typedef struct source {
     uint32_t index;
     char what[160];       /* source "name", for messages */
     char pointer[1024];   /* STYLE: /sources/name, for messages about the style */
-    camber_tile_set *set; /* only of a vector source */
+    camber_tile_set *set; /* only for a vector source */
     bool is_bounded;      /* the document has bounds: there are no tiles outside */
     double bounds[4];     /* world coordinates; x0 > x1: unknown */
 } source;
@@ -219,7 +219,7 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     return status;
 }
 
-/* about: the style's own object, whose members override those of the TileJSON file. */
+/* about: the style's own object, whose members override the members of the TileJSON file. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
     camber_status status = check_exists(sources, one, path);

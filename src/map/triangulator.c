@@ -1,4 +1,4 @@
-/* Makes triangles of areas.
+/* Makes triangles from areas.
  *
  * Input: rings in px, and the window to clip them to. Output: corners and triangles. Main idea: each ring is clipped at
  * each side of the window, which keeps the winding numbers inside the window. Most rings are buildings and the like,
@@ -27,7 +27,7 @@ typedef struct ring {
     uint32_t next;  /* number of the group's next ring, + 1; 0: none */
 } ring;
 
-/* GLU's constants. The callbacks are those that get the polygon's data. */
+/* GLU's constants. The callbacks are the variants that get the polygon's data. */
 enum {
     GLU_VERTEX = 100107,
     GLU_ERROR = 100109,
@@ -309,7 +309,7 @@ static void measure(const camber_triangulator *t, ring *r) {
         const int64_t turned = turn(a, b, d);
         left |= turned < 0;
         right |= turned > 0;
-        /* A horizontal side counts as going up if it goes west, otherwise as going down. */
+        /* A horizontal side counts as running up if it runs west, otherwise as running down. */
         const bool up = b.y < a.y || (b.y == a.y && b.x < a.x), up_next = d.y < b.y || (d.y == b.y && d.x < b.x);
         turns_back += up != up_next;
     }
@@ -423,7 +423,7 @@ static bool sectors_meet(sector a, sector b) {
            (turn(a.at, a.to, b.to) == 0 && ahead > 0);
 }
 
-/* Whether a corner and the edge from a to b, which it is on, have part of their insides in common. */
+/* Whether the inside at a corner and the inside of the edge from a to b, on which the corner is, have a common part. */
 static bool reaches_past(sector s, camber_corner a, camber_corner b) {
     return turn(s.from, s.at, s.to) < 0 || turn(a, b, s.from) > 0 || turn(a, b, s.to) > 0;
 }
@@ -503,7 +503,7 @@ static uint32_t group_of(ring *rings, uint32_t i) {
     return i;
 }
 
-/* Compares left sides, and of equal ones the order in which the rings were added. */
+/* Compares left sides and, if these are equal, the order in which the rings were added. */
 static int compare_sides(const void *a, const void *b) {
     const left_side *one = a, *other = b;
     return one->x != other->x ? (one->x > other->x) - (one->x < other->x)

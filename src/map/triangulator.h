@@ -1,4 +1,4 @@
-/* Makes triangles of areas, which are closed rings filled by the nonzero rule.
+/* Makes triangles from areas, which are closed rings filled by the nonzero rule.
  *
  * Coordinates are whole units, so all decisions are exact. The triangles of a fill do not overlap, except by the one
  * unit to which crossings are rounded. */
@@ -33,9 +33,9 @@ typedef struct camber_triangles {
 
 typedef struct camber_triangulator camber_triangulator;
 
-/* Whether GLU is installed, which makes triangles of rings that meet. */
+/* Whether GLU is installed, which makes triangles from rings that meet. */
 bool camber_triangulator_is_available(void);
-/* Logs that it is not; returns CAMBER_ERROR_DEVICE. */
+/* Logs that GLU is not installed, and returns CAMBER_ERROR_DEVICE. */
 camber_status camber_triangulator_fail_missing(camber_context *context);
 /* Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (GLU is not installed). */
 camber_status camber_triangulator_create(camber_context *context, camber_triangulator **triangulator);
@@ -50,7 +50,7 @@ static inline bool camber_ring_touches(const camber_ring_box *box, const camber_
 /* Clips a ring to the window and adds it to the next fill. points: count pairs of px; the last equals the first. */
 camber_status camber_triangulator_add(camber_triangulator *triangulator, const float *points, size_t count,
                                       const camber_ring_window *window);
-/* Makes triangles of the rings that were added, and forgets the rings. Returns CAMBER_ERROR_MEMORY. */
+/* Makes triangles from the rings that were added, and forgets the rings. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_triangulator_fill(camber_triangulator *triangulator, camber_triangles *triangles);
 
 #endif

@@ -56,7 +56,7 @@ static inline void camber_view_project(const camber_view *view, double world_x, 
     px[1] = dy * view->cosine - dx * view->sine + 0.5 * view->height;
 }
 
-/* How a picture shows the plane of the map: as it is without a pitch, else in perspective. */
+/* How a picture shows the plane of the map: unchanged without a pitch, otherwise in perspective. */
 typedef struct camber_view_lens {
     bool pitched;
     camber_perspective perspective;
@@ -64,8 +64,8 @@ typedef struct camber_view_lens {
 } camber_view_lens;
 
 camber_view_lens camber_view_lens_of(const camber_view *view);
-/* Px of the plane to px of the picture as it is seen. Returns the depth: 1 at the centre, more above it. 0: the
- * point is not in front of the camera, and it is not seen. */
+/* Converts px of the plane to px of the picture as it is seen. Returns the depth: 1 at the centre, more above it. 0:
+ * the point is not in front of the camera, and is not seen. */
 static inline double camber_lens_see(const camber_view_lens *lens, const double *plane, double *seen) {
     const double x = plane[0] - lens->half_width, y = plane[1] - lens->half_height;
     const double depth = 1.0 - lens->perspective.fall * y;
@@ -80,7 +80,7 @@ static inline double camber_lens_see(const camber_view_lens *lens, const double 
     return depth;
 }
 
-/* Bounds in device px of a box in world coordinates. */
+/* Returns the bounds of a box in world coordinates, in device px. */
 camber_box camber_view_project_box(const camber_view *view, camber_box world);
 
 static inline void camber_box_add(camber_box *box, double x, double y) {

@@ -1,12 +1,12 @@
 /* Assembles the rings of a multipolygon from its ways.
  *
  * Input: ways, closed or not, in any order and direction, with or without roles. Output: rings, outer ones first. The
- * main idea is to walk from way to way by the places at which they end. If a walk returns to a place where it was
- * before, it has found a ring, which is removed from the walk; so rings that touch stay separate. Ways with the same
- * role are walked first, then everything that is left. If no way is missing and all of them form rings, geometry
- * decides about roles (planar.h). Otherwise the roles of the ways do, and a ring without a role is a hole if an odd
- * number of other rings contain it. Time is linear in the number of places, apart from sorting ends and testing such
- * rings. */
+ * main idea is to walk from way to way through the places at which they end. If a walk returns to a place where it was
+ * before, it has found a ring, which is removed from the walk; so rings that touch each other stay separate. The first
+ * walks use only ways with the same role, and the last ones use all ways that are left. If no way is missing and all of
+ * them form rings, their geometry decides which rings are holes (planar.h). Otherwise the roles of the ways decide, and
+ * a ring without a role is a hole if an odd number of other rings contain it. Time is linear in the number of places,
+ * apart from sorting the ends and testing the rings without a role. */
 #include "osm/assemble.h"
 
 #include "osm/node_set.h"
@@ -17,7 +17,7 @@
 
 #define NONE UINT32_MAX
 
-/* An end of a piece: end 2 * piece is its first place, and end 2 * piece + 1 its last. */
+/* An end of a piece: end 2 * piece is the first place of the piece, and end 2 * piece + 1 is its last place. */
 typedef struct piece_end {
     uint64_t place;
     uint32_t end;
@@ -31,7 +31,7 @@ typedef struct walker {
     uint32_t *nodes;      /* by end: its node, which is the index of its place among the distinct places of all ends */
     uint32_t *first_ends; /* by node: index into ends, and one more entry at the end */
     uint32_t *next_ends;  /* by node: the first of its ends that a walk of the current role may still use */
-    uint32_t *walked;     /* by node: its position on the walk; NONE: not on it */
+    uint32_t *walked;     /* by node: its position on the walk; NONE: it is not on the walk */
     uint32_t *walk;       /* the ends at which the walk enters pieces */
     uint32_t walk_count;
     uint8_t *states; /* by piece */
@@ -39,8 +39,8 @@ typedef struct walker {
 
 enum { FREE = 0, WALKED, IN_RING };
 
-/* Limits: pairs of rings that are compared per relation, and places that are examined for this per file. Beyond them,
- * rings without a role become outer ones. Only malicious files exceed them. */
+/* Limits for finding out which rings contain others: the compared pairs of rings per relation, and the examined places
+ * per file. If one is exceeded, rings without a role become outer rings. Only malicious files exceed them. */
 static const size_t MOST_COMPARED = (size_t)1 << 20, MOST_PLACES = (size_t)1 << 28;
 
 static int compare_ends(const void *left, const void *right) {
@@ -77,7 +77,7 @@ static bool add_places(camber_osm_assembly *to, const camber_osm_piece *piece, b
     return true;
 }
 
-/* Makes a ring of the pieces that the walk entered from this position on. */
+/* Makes a ring from the pieces that the walk entered at position `from` and later. */
 static bool add_ring(walker *self, uint32_t from) {
     camber_osm_assembly *to = self->to;
     camber_osm_ring ring = {.first = to->place_count, .role = self->pieces[self->walk[from] / 2].role};
@@ -101,7 +101,8 @@ static bool add_ring(walker *self, uint32_t from) {
 
 /* ---- Walking ---- */
 
-/* Finds a piece that continues from a node, and returns the end at which it is entered. role NONE: any role. */
+/* Finds a piece that continues from a node, and returns the end at which the walk enters it. If role is NONE, the piece
+ * may have any role. */
 static uint32_t find_next(walker *self, uint32_t node, uint32_t role) {
     for (uint32_t i = self->next_ends[node]; i < self->first_ends[node + 1]; i++) {
         const uint32_t piece = self->ends[i].end / 2;
@@ -112,7 +113,7 @@ static uint32_t find_next(walker *self, uint32_t node, uint32_t role) {
     return NONE;
 }
 
-/* Walks from a piece on, and backs up from dead ends. */
+/* Walks on from a piece, and backs out of dead ends. */
 static bool walk_from(walker *self, uint32_t piece, uint32_t role) {
     uint32_t at = self->nodes[2 * piece], next = 2 * piece;
     for (self->walk_count = 0;; next = find_next(self, at, role)) {
@@ -132,7 +133,8 @@ static bool walk_from(walker *self, uint32_t piece, uint32_t role) {
     }
 }
 
-/* Makes rings of the pieces with a role; NONE: with any. Pieces that are in no ring are free again afterwards. */
+/* Makes rings from the pieces with a role, or from all pieces if it is NONE. Afterwards, pieces that are in no ring may
+ * be used again. */
 static bool walk_role(walker *self, uint32_t role) {
     memcpy(self->next_ends, self->first_ends, 2 * self->count * sizeof *self->next_ends);
     for (uint32_t i = 0; i < self->count; i++)
@@ -149,8 +151,8 @@ static bool walk_role(walker *self, uint32_t role) {
 
 /* ---- Roles ---- */
 
-/* Whether a place is inside a ring: 1, outside: 0, or on it: negative. Exact for rings smaller than about 9 degrees,
- * whose products a double represents exactly. */
+/* Returns 1 if a place is inside a ring, 0 if it is outside, and a negative number if it is on the ring. The result is
+ * exact for rings smaller than about 9 degrees, because a double represents their products exactly. */
 static int lies_in(const camber_osm_assembly *a, const camber_osm_ring *ring, uint64_t place) {
     const double x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     bool inside = false;

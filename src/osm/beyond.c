@@ -1,7 +1,7 @@
-/* Looks for things in a PBF that GDAL silently ignores.
+/* Finds out whether GDAL would silently skip parts of a PBF.
  *
- * Input: a file that is to be left to GDAL. Output: why GDAL would read it wrongly. GDAL 3.6 silently skips blobs that
- * are not compressed with zlib, ways whose nodes come after them, and places on ways. */
+ * Input: a file that is to be left to GDAL. Output: the reasons why GDAL would misread it. GDAL 3.6 silently skips
+ * blobs that are not compressed with zlib, ways whose nodes come after them, and places that are stored in ways. */
 #include "osm/beyond.h"
 
 enum { WAY_LATITUDES = 9 };
@@ -48,7 +48,7 @@ static void look_at_group(block *to, camber_wire group) {
 typedef struct looking {
     const camber_osm_file *file;
     camber_osm_beyond *beyond;
-    unsigned last; /* the kind that came last */
+    unsigned last; /* the kind of the last entity so far */
 } looking;
 
 static bool look_at_block(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure) {

@@ -1,4 +1,4 @@
-/* Finds features of a PBF that GDAL silently ignores. */
+/* Finds out whether GDAL would silently skip parts of a PBF. */
 #ifndef CAMBER_OSM_BEYOND_H
 #define CAMBER_OSM_BEYOND_H
 
@@ -6,9 +6,9 @@
 
 typedef struct camber_osm_beyond {
     camber_osm_codec codec; /* a codec that GDAL does not support; CAMBER_OSM_CODEC_NONE: there is none */
-    bool no_size;           /* blobs do not state their uncompressed size */
-    bool on_ways;           /* ways contain the places of their nodes, so the nodes may be missing */
-    bool unordered;         /* nodes come after ways, or ways after relations */
+    bool no_size;           /* some blobs do not state their uncompressed size */
+    bool on_ways;           /* some ways contain the places of their nodes, so the nodes may be missing */
+    bool unordered;         /* some nodes come after ways, or some ways after relations */
 } camber_osm_beyond;
 
 /* Examines the whole file. */

@@ -1,7 +1,7 @@
 /* Reads the outer layers of a PBF file: blobs with their headers, compressed (codec.h) or not.
  *
- * Input: a path. Output: the list of blobs, and then the blocks in them, one at a time and from any thread. The format
- * is defined at wiki.openstreetmap.org/wiki/PBF_Format. The limits on headers and blobs are the format's own, so a file
+ * Input: a path. Output: the list of blobs, and then the block in each blob, which any thread may read. The format is
+ * defined at wiki.openstreetmap.org/wiki/PBF_Format. The limits on headers and blobs are the format's own, so a file
  * cannot ask for much memory. Blobs of unknown types are skipped, as the format requires. */
 #include "osm/blobs.h"
 
@@ -12,7 +12,7 @@
 
 enum { MOST_HEADER_BYTES = 64 << 10, MOST_BLOB_BYTES = 32 << 20 };
 
-/* Field numbers: of a blob's header, of a blob, of the file's header and of a block. */
+/* The field numbers in a blob's header, in a blob, in the file's header and in a block. */
 enum { HEADER_TYPE = 1, HEADER_SIZE = 3 };
 enum { BLOB_RAW_SIZE = 2 }; /* its other fields are camber_osm_codec values */
 enum { FILE_BOX = 1, FILE_REQUIRED_FEATURE = 4 };
@@ -20,7 +20,7 @@ enum { BLOCK_STRINGS = 1, BLOCK_GROUP = 2, BLOCK_GRANULARITY = 17, BLOCK_LATITUD
 
 /* ---- Bytes of the file ---- */
 
-/* Reads up to size bytes, or fewer at the end of the file. Returns a negative value on errors. */
+/* Reads size bytes, or fewer if the file ends before. Returns a negative value if reading fails. */
 static ssize_t read_at(int file, uint8_t *bytes, size_t size, uint64_t offset) {
     size_t done;
     return camber_file_read(file, bytes, size, offset, &done) ? -1 : (ssize_t)done;
@@ -176,7 +176,7 @@ bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group)
 
 /* ---- The list of blobs ---- */
 
-/* Reads the bounding box of a file's header: west, east, north and south in nanodegrees, which are converted to 10^-7
+/* Reads the bounding box in a file's header: west, east, north and south in nanodegrees, which are converted to 10^-7
  * degrees. */
 static void read_box(camber_wire wire, camber_osm_box *box) {
     int64_t sides[4] = {0};

@@ -4,7 +4,7 @@
 
 #include "osm/codec.h"
 
-/* The kinds of entities in a blob, once it has been examined. */
+/* Bits for the kinds of entities in a blob that has been examined. */
 enum {
     CAMBER_OSM_HAS_NODES = 1,
     CAMBER_OSM_HAS_WAYS = 2,
@@ -29,7 +29,7 @@ typedef struct camber_osm_file {
     const char *path;
     int file;
     uint64_t size_bytes;
-    camber_osm_blob *blobs; /* those with data, in the order of the file */
+    camber_osm_blob *blobs; /* the blobs with data, in the order of the file */
     size_t blob_count, blob_capacity;
     camber_osm_box box; /* the box that the file covers, according to its header */
 } camber_osm_file;
@@ -37,8 +37,8 @@ typedef struct camber_osm_file {
 /* Whether the file begins like a PBF of OpenStreetMap. Its name does not matter. */
 bool camber_osm_knows(const char *path);
 
-/* Opens a file and finds its blobs. *declined: it requires features that this reader does not support; nothing is
- * logged. */
+/* Opens a file and finds its blobs. *declined: the file requires features that this reader does not support; then
+ * nothing is logged. */
 camber_status camber_osm_file_open(camber_context *context, const char *path, camber_osm_file *file, bool *declined);
 void camber_osm_file_close(camber_osm_file *file);
 
@@ -46,7 +46,7 @@ void camber_osm_file_close(camber_osm_file *file);
 typedef struct camber_osm_unpacked {
     camber_osm_block packed, plain;
     camber_osm_codec codec;
-    bool tells_size; /* it states its uncompressed size */
+    bool tells_size; /* the blob states its uncompressed size */
 } camber_osm_unpacked;
 
 void camber_osm_unpacked_free(camber_context *context, camber_osm_unpacked *unpacked);
@@ -54,7 +54,7 @@ void camber_osm_unpacked_free(camber_context *context, camber_osm_unpacked *unpa
 /* A block of nodes, ways and relations. */
 typedef struct camber_osm_entities {
     camber_wire strings; /* the table of strings */
-    camber_wire groups;  /* the whole block again, to iterate over its groups */
+    camber_wire groups;  /* the whole block, for iterating over its groups */
     int32_t granularity; /* the unit of coordinates, in 10^-9 degrees */
     int64_t longitude_offset, latitude_offset;
 } camber_osm_entities;
@@ -62,12 +62,12 @@ typedef struct camber_osm_entities {
 /* Reads and decompresses a blob. The entities point into the decompressed bytes. */
 bool camber_osm_file_unpack(const camber_osm_file *file, size_t blob, camber_osm_pass *pass,
                             camber_osm_unpacked *unpacked, camber_osm_entities *entities, camber_osm_failure *failure);
-/* Returns the bit of a kind of entities by its key in a group, or 0 if it is not one. */
+/* Returns the bit for the kind of entities in the field of a group that has this key, or 0 if it has none. */
 unsigned camber_osm_kind_of(uint64_t key);
 /* Gets the next group of entities. Returns false if there is none, or if the block is damaged (groups.bad). */
 bool camber_osm_entities_next(camber_osm_entities *entities, camber_wire *group);
 
-/* Fields of a group, which are the kinds of entities. */
+/* The fields of a group. Each contains entities of one kind. */
 enum { CAMBER_OSM_NODE = 1, CAMBER_OSM_DENSE = 2, CAMBER_OSM_WAY = 3, CAMBER_OSM_RELATION = 4 };
 
 #endif

@@ -1,15 +1,16 @@
 /* Turns the coast into an area of sea.
  *
- * Input: ways with land on their left, and a box. Output: rings. The main idea: ways that follow each other are joined.
- * Each part of such a line within the box is a stretch from one place on the box's sides to another, or a ring. The sea
- * is to the right of a stretch. So it continues along the box's sides, clockwise, from the end of the stretch to the
- * beginning of the next:
+ * Input: ways with land on their left, and a box. Output: the rings around the sea. The main idea: ways that continue
+ * each other are joined into lines. Each part of a line inside the box is either a ring, or a stretch from one place on
+ * the box's sides to another. The sea is to the right of a stretch, so the outline of the sea continues clockwise along
+ * the box's sides, from the end of the stretch to the beginning of the next one:
  *
  *        +---end--->--+       Ends and beginnings alternate around the box. If they do not, a part of the coast is
  *        |    |       |       missing, and then drawing no sea is better than flooding the land.
  *        | land  sea  v
- *        |    ^       |       Rings are islands, or seas surrounded by land. How often the others wind around a ring
- *        +--begin--<--+       shows whether it fits. Without stretches, it also shows whether the box is in the sea.
+ *        |    ^       |       Rings are islands, or seas surrounded by land. How often the other rings wind around a
+ *        +--begin--<--+       ring shows whether it fits, and, if there are no stretches, whether the box is in the
+ * sea.
  */
 #include "osm/coast.h"
 
@@ -18,21 +19,22 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* How far from a side the coast may end: as a fraction of the box's shorter side, and in 10^-7 degrees. */
+/* The coast may end at most this far from a side of the box: 1 / NEAR_SHARE of the box's shorter side, and NEAR_MOST in
+ * 10^-7 degrees. */
 enum { NEAR_SHARE = 16, NEAR_MOST = 500000 };
-/* How many pairs of an edge and a ring are examined at most. A coast has about one per edge. */
+/* The maximum number of pairs of an edge and a ring that are examined. A real coast needs about one per edge. */
 static const size_t MOST_PROBED = (size_t)1 << 31;
 
 /* A way and its first place. */
 typedef struct way_start {
     uint64_t place;
     uint32_t way;
-    uint32_t used_count; /* for the first way that begins at its place: how many from it on are used */
+    uint32_t used_count; /* only for the first of the ways that begin at a place: how many of these are used */
     bool used;
 } way_start;
 
-/* A part of the coast in the box, from side to side: its places, and the positions along the sides at which it begins
- * and ends. */
+/* A part of the coast that leads through the box from side to side: its places, and the positions along the sides at
+ * which it begins and ends. */
 typedef struct stretch {
     size_t first, count;
     int64_t begin, end;
@@ -63,7 +65,7 @@ typedef struct shore {
 
 /* ---- Ways ---- */
 
-/* Returns the side near which a place in the box is: 0 left, 1 right, 2 bottom, 3 top. Negative: it is not near any. */
+/* Returns the side that a place in the box is near: 0 left, 1 right, 2 bottom, 3 top; negative if it is near none. */
 static int find_side(camber_osm_box b, uint64_t place) {
     const int64_t x = camber_osm_longitude(place), y = camber_osm_latitude(place), wide = (int64_t)b.right - b.left,
                   high = (int64_t)b.top - b.bottom, shorter = wide < high ? wide : high;
@@ -75,7 +77,7 @@ static int find_side(camber_osm_box b, uint64_t place) {
     return distances[side] >= 0 && distances[side] <= most ? side : -1;
 }
 
-/* Returns the nearest place on the side near which a place is, or the place itself. */
+/* Moves a place to the side that it is near, and returns the result. A place that is near no side stays as it is. */
 static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
     const int side = find_side(b, place), x = camber_osm_longitude(place), y = camber_osm_latitude(place);
     return side < 0   ? place
@@ -86,8 +88,8 @@ static uint64_t nearest_on_side(camber_osm_box b, uint64_t place) {
 /* A gap between two nodes of a way: the coast leaves the box there, and returns on the same side or on another one. */
 typedef enum gap { NO_GAP, GAP_AT_SIDE, GAP_BETWEEN_SIDES } gap;
 
-/* Along one side, a segment counts as a gap if it is long compared with the distances of its ends from the side. As
- * coast, such a segment would cut off only a narrow strip, but wrongly. */
+/* A segment along one side counts as a gap if it is long compared with the distances of its ends from the side. If it
+ * were taken for coast, it would wrongly cut off a narrow strip. */
 static gap find_gap(camber_osm_box box, uint64_t a, uint64_t b) {
     const int side = find_side(box, a), next = find_side(box, b);
     if (side < 0 || next < 0 || side != next)
@@ -114,8 +116,8 @@ static camber_status end_way(camber_osm_coast *coast, size_t first) {
     return CAMBER_OK;
 }
 
-/* At a gap the coast continued outside the box: along the same side, or it returns on another side as a separate way.
- */
+/* At a gap, the coast continues outside the box. If it returns on the same side, the way is led along that side. If it
+ * returns on another side, the way is split in two. */
 camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count, bool has_gaps) {
     size_t first = coast->place_count;
     camber_status status = CAMBER_OK;
@@ -158,7 +160,7 @@ static int compare_starts(const void *a, const void *b) {
                                       : (one->way > other->way) - (one->way < other->way);
 }
 
-/* Returns the first of the ways that begin at a place, or the position at which it would be. */
+/* Returns the index of the first of the ways that begin at a place, or the index at which it would be. */
 static size_t find_start(const shore *s, uint64_t place) {
     size_t first = 0;
     for (size_t count = s->coast->way_count; count > 0;) {
@@ -184,7 +186,7 @@ static size_t find_next(shore *s, uint64_t place) {
     return first + *used < count && s->starts[first + *used].place == place ? first + *used : count;
 }
 
-/* Joins ways that follow each other. */
+/* Makes a line from a way and those that continue it. */
 static void take_line(shore *s, size_t start) {
     const camber_osm_coast *coast = s->coast;
     s->line_count = 0;
@@ -230,8 +232,8 @@ typedef struct inside {
     int from_side, to_side; /* 0: an end of the segment; otherwise 1 left, 2 right, 3 bottom, 4 top */
 } inside;
 
-/* Cuts at one side. distance: of the segment's beginning from the side, positive inside. taken: by how much the
- * distance shrinks along the segment. */
+/* Cuts a segment at one side. distance: how far the segment's beginning is from the side, positive inside. taken: by
+ * how much this distance shrinks along the segment. */
 static void cut_at(inside *i, double distance, double taken, int side) {
     const double share = distance / taken;
     if (taken > 0.0 && share < i->to) {
@@ -285,7 +287,7 @@ static void put_place(shore *s, uint64_t place) {
     sea->places[sea->place_count++] = place;
 }
 
-/* Ends the ring that begins at a place, and closes it. */
+/* Closes and adds the ring whose first place has the index `first`. */
 static void put_ring(shore *s, size_t first, camber_osm_role role) {
     camber_osm_assembly *sea = s->sea;
     if (!s->failed && sea->places[first] != sea->places[sea->place_count - 1])
@@ -298,7 +300,7 @@ static void put_ring(shore *s, size_t first, camber_osm_role role) {
     sea->rings[sea->ring_count++] = (camber_osm_ring){first, sea->place_count - first, role};
 }
 
-/* Adds a closed line in the box. If it goes counter-clockwise as seen, land is inside it. */
+/* Adds a closed line that is wholly inside the box. If it goes counter-clockwise on the map, land is inside it. */
 static void put_closed(shore *s, const uint64_t *places, size_t count) {
     const size_t first = s->sea->place_count;
     const double x0 = camber_osm_longitude(places[0]), y0 = camber_osm_latitude(places[0]);
@@ -337,8 +339,8 @@ static void begin_stretch(shore *s, uint64_t place) {
     add_place(s, place);
 }
 
-/* Ends a stretch, which must go from one place on the sides to another. One that only touches a side is dropped, and
- * one that ends where it begins becomes a ring. */
+/* Ends a stretch, which must lead from one place on the sides to another. A stretch that only touches a side is
+ * dropped, and a stretch that ends where it begins becomes a ring. */
 static void end_stretch(shore *s) {
     stretch *p = s->stretches + s->stretch_count - 1;
     s->in_stretch = false;
@@ -355,8 +357,8 @@ static void end_stretch(shore *s) {
     s->sea->open |= p->begin < 0 || p->end < 0;
 }
 
-/* An extract may have no nodes outside its box. Then the coast ends at the last node before a side, and is extended to
- * the side. */
+/* Extends the ends of the coast to the sides. An extract may have no nodes outside its box; then the coast ends at the
+ * last node before a side. */
 static void reach_sides(shore *s) {
     const uint64_t first = nearest_on_side(s->box, s->line[0]),
                    last = nearest_on_side(s->box, s->line[s->line_count - 1]);
@@ -397,7 +399,8 @@ static void cut_line(shore *s, size_t first) {
         end_stretch(s);
 }
 
-/* A line is a ring in the box, or is outside, or is cut. If it is closed, cutting starts from a place outside. */
+/* Adds a line that is a ring inside the box, drops a line outside the box, and cuts any other into stretches. If the
+ * line is closed, cutting starts from a place outside the box. */
 static void take_stretches(shore *s) {
     const bool closed = s->line[0] == s->line[s->line_count - 1];
     size_t outside = 0;
@@ -455,7 +458,7 @@ static uint64_t corner_of(const shore *s, int corner) {
     return corners[corner & 3];
 }
 
-/* Adds the corners between two positions on the sides, clockwise. */
+/* Adds the corners of the box between two positions on its sides, clockwise. */
 static void put_corners(shore *s, int64_t from, int64_t to) {
     const int64_t wide = (int64_t)s->box.right - s->box.left, high = (int64_t)s->box.top - s->box.bottom;
     const int64_t corners[8] = {0,
@@ -547,8 +550,9 @@ static void wind(probe *probes, size_t count, size_t ring, uint64_t a, uint64_t 
             probes[i].around += by > ay ? 1 : -1;
 }
 
-/* Drops rings that are on the wrong side of others. Without stretches, the rings decide whether the box is in the sea,
- * and all of them must agree. closed_count: the first rings, which are closed in the box. */
+/* Drops rings that are on the wrong side of others. If there are no stretches, the rings decide whether the box is in
+ * the sea, and all of them must agree. closed_count: the number of rings that are closed in the box, which come
+ * first. */
 static void fit_rings(shore *s, probe *probes, size_t closed_count) {
     camber_osm_assembly *sea = s->sea;
     size_t left = MOST_PROBED;

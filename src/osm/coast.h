@@ -8,20 +8,20 @@
 typedef struct camber_osm_coast {
     camber_context *context;
     camber_osm_box box; /* the box to be filled with sea */
-    uint64_t *places;   /* of all ways, one way after the other */
+    uint64_t *places;   /* the places of all ways, one way after the other */
     size_t place_count, place_capacity;
     size_t *ends; /* way_count: the end of each way's places */
     size_t way_count, way_capacity;
 } camber_osm_coast;
 
-/* Adds a way by the places of its nodes. has_gaps: nodes in its middle are missing, perhaps because they are outside
- * the box. Returns CAMBER_ERROR_MEMORY. */
+/* Adds a way, given by the places of its nodes. has_gaps: some nodes in its middle are missing, perhaps because they
+ * are outside the box. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_osm_coast_add(camber_osm_coast *coast, const uint64_t *places, size_t count, bool has_gaps);
 void camber_osm_coast_free(camber_osm_coast *coast);
 
-/* Replaces the rings by those of the sea in the box. Islands on land and seas in the sea are dropped. sea->open: there
- * are no rings, because the box is empty, or the coast begins or ends inside it or contradicts itself. Returns
- * CAMBER_ERROR_MEMORY. */
+/* Replaces the rings in `sea` by the rings around the sea in the box. Islands on land and seas within the sea are
+ * dropped. sea->open: there are no rings, because the box is empty, or the coast begins or ends inside it or
+ * contradicts itself. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_osm_coast_fill(const camber_osm_coast *coast, camber_osm_assembly *sea);
 
 #endif

@@ -2,8 +2,8 @@
  *
  * Input: compressed bytes. Output: uncompressed bytes, at most 32 MiB, the format's limit. A blob need not state its
  * uncompressed size; then the buffer is doubled until the bytes fit. A few bytes of zstd or LZMA can expand to 32 MiB,
- * and a file may contain millions of such blobs. Therefore bytes beyond 256 KiB are limited to 1,100 times the
- * compressed size, a ratio that DEFLATE cannot reach. */
+ * and a file may contain millions of such blobs. Therefore a blob may decompress to at most 256 KiB or 1,100 times its
+ * compressed size, whichever is more. DEFLATE cannot reach that ratio. */
 #include "osm/codec.h"
 
 #ifdef CAMBER_LIBDEFLATE
@@ -31,7 +31,7 @@ typedef enum outcome {
     NO_MEMORY,
 } outcome;
 
-/* Compressed bytes, and a buffer for the uncompressed ones; size is set to their number. */
+/* Compressed bytes, and a buffer for the uncompressed bytes; size becomes their number. */
 typedef struct job {
     camber_osm_pass *pass;
     const uint8_t *from;
@@ -98,7 +98,8 @@ static void release(void *user, void *block) {
     camber_osm_release(user, block);
 }
 
-/* Accepts xz files and bare LZMA. xz makes dictionaries of at most 64 MiB by default; they count as camber's memory. */
+/* Accepts xz files and bare LZMA streams. By default, xz makes dictionaries of at most 64 MiB. They are allocated by
+ * the context. */
 static outcome unpack_lzma(job *self) {
     static const uint64_t most_memory = UINT64_C(80) << 20;
     const lzma_allocator allocator = {.alloc = allocate, .free = release, .opaque = self->pass};
@@ -116,7 +117,7 @@ static outcome unpack_lzma(job *self) {
     lzma_end(&stream);
     if (result == LZMA_STREAM_END || result == LZMA_MEM_ERROR)
         return result == LZMA_STREAM_END ? DONE : NO_MEMORY;
-    return full ? FULL : BROKEN; /* or it needs a larger dictionary */
+    return full ? FULL : BROKEN; /* or the stream needs a larger dictionary */
 }
 #endif
 

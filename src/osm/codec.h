@@ -16,7 +16,7 @@ typedef enum camber_osm_codec {
     CAMBER_OSM_CODEC_ZSTD = 7,
 } camber_osm_codec;
 
-/* Returns a name such as "lz4", or "" for a value that is not a codec of blobs. */
+/* Returns a name such as "lz4", or "" if the value is not a blob codec. */
 const char *camber_osm_codec_get_name(camber_osm_codec codec);
 
 /* Decompresses at most most_bytes into the block. size_bytes: the size that the blob states; 0: it states none. *plain:

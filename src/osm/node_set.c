@@ -1,7 +1,7 @@
 /* A set of ids as a tree of bitmaps, with a place for each id.
  *
  * Input: ids in any order, often consecutive. Output: an id's index among all ids, in the order in which leaves were
- * made. The ids of a country come in runs, so a node takes a few bits; an isolated id takes 350 bytes. */
+ * made. In the data of a country, ids come in runs, so an id takes a few bits; an isolated id takes 350 bytes. */
 #include "osm/node_set.h"
 
 enum { LEAF_BITS = CAMBER_OSM_LEAF_BITS, TWIG_BITS = 6 };

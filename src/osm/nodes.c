@@ -1,9 +1,9 @@
 /* Reads the places of nodes.
  *
  * Input: blobs, and the set of nodes that lines need. Output: their places, as the same integers in 10^-7 degrees that
- * GDAL's reader uses. Places may instead be stored in ways (osmium add-locations-to-ways); then a node has one in each
- * way that names it. Threads store places as they find them, so the choice among several places must not depend on the
- * order. */
+ * GDAL's reader uses. Places may instead be stored in ways (osmium add-locations-to-ways); then a node has a place in
+ * each way that names it. Threads store places as they find them, so the choice among several places must not depend on
+ * the order. */
 #include "osm/nodes.h"
 
 #include <math.h>
@@ -127,8 +127,8 @@ static bool read_dense(decoder *self, camber_wire wire) {
            camber_osm_fail(self->failure, "nodes that do not parse");
 }
 
-/* Reads the places that are stored in a way. Those that are not on Earth count as missing, which is how osmium writes
- * missing nodes. */
+/* Reads the places that are stored in a way. Places that are not on Earth count as missing, because osmium writes such
+ * a place for a missing node. */
 static bool read_way(decoder *self, camber_wire wire) {
     camber_wire ids = {0}, longitudes = {0}, latitudes = {0};
     uint64_t key, place, id = 0, longitude = 0, latitude = 0;
@@ -155,8 +155,8 @@ static bool read_way(decoder *self, camber_wire wire) {
            camber_osm_fail(self->failure, "a way that does not parse");
 }
 
-/* nodes_alone: the blob should have only nodes, so a way (or a relation, if relations are wanted) means that the file
- * is not in order. */
+/* Reads a group. nodes_alone: the blob should have only nodes, so a way (or a relation, if relations are wanted) means
+ * that the file is not in order. */
 static bool read_group(decoder *self, camber_wire group, const camber_osm_nodes_desc *desc, bool nodes_alone) {
     uint64_t key;
     bool read = true;
@@ -257,8 +257,8 @@ static bool look_at_blob(const search *self, size_t blob, camber_osm_pass *pass,
     return !entities.groups.bad || camber_osm_fail(failure, "a block that does not parse");
 }
 
-/* Finds the first blob that begins with a later kind than these. Starts at a guess and searches in growing steps until
- * the end is between two of them, then by bisection. A blob without entities may count as any kind. */
+/* Finds the first blob that begins with a kind after last_kind. Starts at a guess, searches in growing steps until that
+ * blob is between two examined ones, and then bisects. A blob without entities may count as any kind. */
 static bool find_end(const search *self, unsigned last_kind, size_t at, size_t *first, camber_osm_pass *pass,
                      block *one, camber_osm_failure *failure) {
     size_t end = self->file->blob_count, step = 1;
@@ -282,7 +282,7 @@ static bool search_blobs(void *user, camber_osm_pass *pass, size_t part, void *s
     const search *self = user;
     const size_t count = self->file->blob_count;
     (void)part;
-    /* In most files, six of seven blobs have nodes, and the last few have relations. */
+    /* The guesses: in most files, six of seven blobs have nodes, and the last few have relations. */
     return find_end(self, CAMBER_OSM_HAS_NODES, count / 7 * 6 + count % 7 * 6 / 7, &self->ends->nodes, pass, slot,
                     failure) &&
            (!self->of_ways || count == 0 ||

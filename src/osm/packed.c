@@ -1,14 +1,14 @@
-/* Packs ways: each node is stored as its difference from the one before.
+/* Packs ways: stores each node as the difference from the node before it.
  *
  * Input: ways with ids of nodes, and the places of these nodes. Output: the places of the ways, one way after the
  * other; the memory of ids and nodes is freed. The main idea: lines in world coordinates take 16 bytes per point, and
- * nodes 8 bytes or more. If lines were made at once, both would be in memory together. Packed lines take a quarter,
- * because the nodes of a way are close to each other.
+ * nodes 8 bytes or more. If lines were made from the nodes directly, both would be in memory together. Packed ways take
+ * a quarter of the memory of lines, because the nodes of a way are close to each other.
  */
 #include "osm/packed.h"
 
-/* A word has a difference of longitudes and one of latitudes, 16 bits each, in 10^-7 degrees; or it is this, and a
- * place follows. */
+/* A word contains a difference of longitudes and one of latitudes, 16 bits each, in 10^-7 degrees. If it has this value
+ * instead, a place follows. */
 static const uint32_t FAR = 0x8000;
 enum { MOST_PLACE_WORDS = 3 };
 
@@ -32,9 +32,9 @@ typedef struct packing {
 
 /* A thread's position in its run. */
 typedef struct packer {
-    const uint64_t *places; /* of the next nodes */
+    const uint64_t *places; /* the places of the next nodes */
     uint32_t *at;
-    uint64_t place; /* the last one that was packed */
+    uint64_t place; /* the place that was packed last */
 } packer;
 
 static void put_place(packer *to, uint64_t place) {
@@ -61,7 +61,7 @@ static void look_up_places(const camber_osm_ways *ways, const camber_osm_run *ru
     }
 }
 
-/* Packs a way, and returns its new form. Fewer than two nodes make no line. *dropped counts areas that are lost. */
+/* Packs a way, and returns its new form. Fewer than two nodes make no line. *dropped counts the areas that are lost. */
 static camber_osm_way pack_way(const packing *all, const camber_osm_way *way, packer *to, size_t *dropped) {
     const packer before = *to;
     uint64_t first = 0, last = 0;
@@ -145,7 +145,7 @@ camber_status camber_osm_pack(camber_osm_ways *ways, const camber_osm_pack_desc 
                                        .from = desc->from,
                                        .to = desc->to};
     bool declined;
-    /* Most places take one word; the first of a way takes three. */
+    /* Most places take one word, but the first place of a way takes three. */
     camber_status status = CAMBER_ERROR_MEMORY;
     if (camber_grow(ways->context, &ways->packed, &ways->packed_capacity, ways->node_count + 2 * ways->way_count,
                     sizeof *ways->packed))

@@ -5,10 +5,10 @@
 #include "osm/ways.h"
 
 typedef struct camber_osm_pack_desc {
-    const char *name; /* of the file, for messages */
+    const char *name; /* the file's name, for messages */
     unsigned threads;
     bool drops_areas;
-    double from, to; /* range of the progress */
+    double from, to; /* the progress before and after this pass */
 } camber_osm_pack_desc;
 
 /* Packs the ways after the places of their nodes were read, and frees ids and nodes. Afterwards a way's node_count is

@@ -1,9 +1,9 @@
 /* Runs a pass: threads process parts in order, and the caller's thread commits the results in the same order.
  *
- * Input: the number of parts, and the functions that process one. Output: committed results. A ring of slots limits how
- * far the threads may run ahead of the commits, and so limits memory. The caller's thread works, too, while it has
- * nothing to commit. A context may be used by only one thread at a time, so a lock protects it: commits hold the lock,
- * and so does code that grows a worker's block. */
+ * Input: the number of parts, and the functions that process a part and commit it. Output: committed results. A ring of
+ * slots limits how far the threads may run ahead of the commits, and so limits memory. The caller's thread works, too,
+ * while it has nothing to commit. A context may be used by only one thread at a time, so a lock protects it: commits
+ * hold the lock, and so does code that grows a worker's block. */
 #include "osm/pass.h"
 
 #include "base/threads.h"
@@ -98,7 +98,7 @@ static bool take(camber_osm_pass *pass, size_t *part) {
     return true;
 }
 
-/* Called with the lock held. Releases it while it works on the part. */
+/* The caller holds the lock, which is released during the work on the part. */
 static void work(camber_osm_pass *pass, size_t part) {
     slot_state *state = &pass->states[part % pass->slot_count];
     void *slot = pass->slots + part % pass->slot_count * pass->desc->slot_bytes;

@@ -4,11 +4,11 @@
 
 #include "base/base.h"
 
-/* Why a part failed. The thread that started the pass logs it, for the first part that failed. */
+/* The reason why a part failed. The thread that started the pass logs the reason for the first part that failed. */
 typedef struct camber_osm_failure {
     camber_status status;
     bool declined; /* the part is valid, but not for this reader */
-    bool told;     /* text includes what to do; otherwise the file is damaged */
+    bool told;     /* the text says what to do; otherwise the file is damaged */
     char text[240];
 } camber_osm_failure;
 
@@ -29,23 +29,23 @@ typedef struct camber_osm_pass_desc {
     void *user;
     /* Runs on any thread. Returns false and sets *failure if it fails. */
     bool (*work)(void *user, camber_osm_pass *pass, size_t part, void *slot, camber_osm_failure *failure);
-    /* Runs on the caller's thread, one part after the other. NULL: nothing to commit. */
+    /* Runs on the caller's thread, for one part after the other. NULL: there is nothing to commit. */
     camber_status (*commit)(void *user, size_t part, void *slot);
     void (*free_slot)(camber_context *context, void *slot);
-    double from, to; /* range of the progress */
+    double from, to; /* the progress before and after this pass */
 } camber_osm_pass_desc;
 
-/* Processes all parts, unless one fails. *declined: a part is not for this reader; nothing is logged. */
+/* Processes all parts, unless one fails. *declined: a part is not for this reader; then nothing is logged. */
 camber_status camber_osm_pass_run(const camber_osm_pass_desc *desc, bool *declined);
-/* Makes room for this many bytes while other threads work, and keeps the content of the block. */
+/* Makes room for size_bytes bytes in the block while other threads work, and keeps its content. */
 bool camber_osm_reserve(camber_osm_pass *pass, camber_osm_block *block, size_t size_bytes, camber_osm_failure *failure);
 
 /* Allocates memory of the context while other threads work. Returns NULL if there is none. */
 void *camber_osm_allocate(camber_osm_pass *pass, size_t size_bytes);
 void camber_osm_release(camber_osm_pass *pass, void *block);
 
-/* Set *failure and return false. fail: the file is damaged; refuse: the file is intact, and the text ends with what to
- * do. */
+/* These functions set *failure and return false. camber_osm_fail: the file is damaged. camber_osm_refuse: the file is
+ * intact, and the text ends with advice. camber_osm_decline: the file is not for this reader. */
 bool camber_osm_fail(camber_osm_failure *failure, const char *text);
 bool camber_osm_refuse(camber_osm_failure *failure, const char *format, ...) CAMBER_PRINTF(2, 3);
 bool camber_osm_decline(camber_osm_failure *failure);

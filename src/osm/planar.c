@@ -3,7 +3,7 @@
  * Input: closed rings. Output: simple rings with the inside of the area on their right, so outer rings go clockwise.
  * The main idea: if no place occurs twice, the rings are simple, and a ring that an odd number of others contain is a
  * hole. Otherwise all rings are split into edges. Two equal edges bound nothing, so both are dropped. Around a place,
- * sectors inside and outside alternate:
+ * sectors inside and outside the area alternate:
  *
  *          \  in  /          An edge that arrives continues with the other edge of the same inner sector. A walk
  *      out  \    /  out      that returns to a place has found a ring, which is removed from the walk. So holes that
@@ -11,8 +11,8 @@
  *           /    \           touch twice becomes an outer ring.
  *          /  in  \
  *
- * For parts of the drawing that are not connected, rays from their westernmost places show whether they are inside
- * others. The time is n log n if places occur twice, otherwise linear, apart from the rays. */
+ * If the edges form several parts that are not connected, a ray from the westernmost place of each part shows whether
+ * it is inside others. The time is n log n if places occur twice, otherwise linear, apart from the rays. */
 #include "osm/planar.h"
 
 #include "osm/node_set.h"
@@ -20,14 +20,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The limit for edges that the rays of a file meet. Only malicious files exceed it. */
+/* The maximum number of edges that are compared with rays and other edges for a file. Only malicious files exceed
+ * it. */
 static const size_t MOST_STEPS = (size_t)1 << 28;
 enum { MOST_ROWS = 1 << 16, MOST_SPANS = 4 };
-/* With at most this many owners, rays are compared with all edges, because making the rows would take longer. */
+/* If there are at most FEW_OWNERS owners, rays are compared with all edges, and if there are at most FEW_PLACES places,
+ * they are compared with each other. Making the rows or a table would take longer. */
 enum { FEW_OWNERS = 8, FEW_PLACES = 32 };
 
-/* An edge of the ring, or of the connected part of the drawing, that owns it. Its ends are keys: places sorted from
- * west to east, then from south to north. */
+/* An edge. Its owner is a ring, or a connected part of the drawing. Its ends are keys, which sort places from west to
+ * east, and then from south to north. */
 typedef struct edge {
     uint64_t ends[2];
     uint32_t owner;
@@ -57,10 +59,10 @@ typedef struct arranger {
     uint64_t *tops; /* by owner: one of its places */
     uint8_t *odd;   /* by owner: it is inside an odd number of others */
     row_index rows;
-    /* Only used if places occur twice: */
+    /* The following fields are used only if places occur twice. */
     half_edge *halves; /* sorted by place, and around each place counter-clockwise from the south */
     size_t half_count;
-    uint32_t *twins, *nodes; /* by half-edge: the same edge from its other end; the index of its place */
+    uint32_t *twins, *nodes; /* by half-edge: the half-edge at the other end of its edge, and the index of its place */
     uint32_t *first;         /* by node, and one more at the end: its first half-edge */
     uint32_t node_count;
     uint32_t *parts;  /* by node: its connected part; NONE */
@@ -142,8 +144,8 @@ static bool index_rows(arranger *self) {
     return true;
 }
 
-/* Returns on which side of the edge a place is. Exact for edges shorter than about 9 degrees, whose products a double
- * represents exactly. */
+/* Returns on which side of the edge a place is. The result is exact for edges shorter than about 9 degrees, because a
+ * double represents their products exactly. */
 static double side_of(const edge *line, uint64_t place) {
     const double x = x_of(place), y = y_of(place), x0 = x_of(line->ends[0]) - x, y0 = y_of(line->ends[0]) - y,
                  x1 = x_of(line->ends[1]) - x, y1 = y_of(line->ends[1]) - y;
@@ -197,7 +199,7 @@ static bool do_cross(const edge *a, const edge *b) {
     return ((a0 < 0.0 && a1 > 0.0) || (a0 > 0.0 && a1 < 0.0)) && ((b0 < 0.0 && b1 > 0.0) || (b0 > 0.0 && b1 < 0.0));
 }
 
-/* Whether a ring crosses another. If so, its role is as good as the result of geometry. */
+/* Whether a ring crosses another. If it does, its geometry is no more reliable than its role. */
 static bool crosses_others(arranger *self, size_t first_edge, size_t end_edge) {
     for (size_t i = first_edge; i < end_edge; i++) {
         size_t low, high;
@@ -256,8 +258,8 @@ static bool find_roles(arranger *self) {
     return true;
 }
 
-/* Whether a place occurs twice, for a few places. Most relations are houses with a yard, for which making a table is
- * not worth it. */
+/* Whether a place occurs twice among a few places. Most relations are houses with a yard, for which it is not worth
+ * making a table. */
 static bool repeats_few(const camber_osm_assembly *to) {
     uint64_t keys[FEW_PLACES];
     size_t count = 0;
@@ -323,8 +325,8 @@ static void drop_pairs(arranger *self) {
     self->edge_count = kept;
 }
 
-/* Whether a half-edge goes east or straight north. At the westernmost place of a part all do, and the first one is next
- * to the outside of the part. */
+/* Whether a half-edge goes east or straight north. At the westernmost place of a part, all half-edges do, and the first
+ * one is next to the outside of the part. */
 static bool goes_east(const half_edge *half) {
     return half->to > half->from;
 }
@@ -380,7 +382,7 @@ static bool make_halves(arranger *self) {
     return true;
 }
 
-/* Numbers the connected parts of the drawing, from the west. */
+/* Numbers the connected parts of the drawing from west to east. */
 static void find_parts(arranger *self) {
     for (uint32_t n = 0; n < self->node_count; n++) {
         if (self->parts[n] != NONE)
@@ -404,7 +406,8 @@ static void find_parts(arranger *self) {
     }
 }
 
-/* Sectors around a node alternate, and so do the directions of its half-edges, of which one is known. */
+/* Directs the half-edges around a node, of which one is directed already. Sectors inside and outside alternate, and so
+ * do the directions. */
 static void direct_node(arranger *self, uint32_t half) {
     const uint32_t node = self->nodes[half];
     for (uint32_t i = self->first[node]; i < self->first[node + 1]; i++)
@@ -443,7 +446,7 @@ static bool direct_edges(arranger *self) {
     return true;
 }
 
-/* Makes a ring of the half-edges of the walk from this one on. */
+/* Makes a ring from the half-edges of the walk from index `from` to before `end`. */
 static bool take_ring(arranger *self, size_t from, size_t end) {
     camber_osm_assembly *to = self->to;
     camber_osm_ring ring = {.first = to->place_count, .count = end - from + 1};
@@ -465,7 +468,7 @@ static bool take_ring(arranger *self, size_t from, size_t end) {
     return true;
 }
 
-/* Follows all half-edges along which rings leave their places, and takes out rings. */
+/* Follows all half-edges along which rings leave their places, and takes the rings out of the walk. */
 static bool walk(arranger *self) {
     for (size_t start = 0; start < self->half_count; start++) {
         size_t depth = 0;
@@ -488,7 +491,7 @@ static bool walk(arranger *self) {
     return true;
 }
 
-/* Splits the rings into edges and makes new rings of them. If edges cross, the rings stay as they are. */
+/* Splits the rings into edges and makes new rings from them. If edges cross, the rings stay as they are. */
 static bool redraw(arranger *self) {
     bool known = false;
     drop_pairs(self);

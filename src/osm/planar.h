@@ -4,8 +4,8 @@
 
 #include "osm/assemble.h"
 
-/* Replaces closed rings by simple ones that bound the same area by the even-odd rule, and sets their roles. Rings that
- * cross keep their roles, or become outer rings if they have none. Returns CAMBER_ERROR_MEMORY. */
+/* Replaces closed rings by simple ones that bound the same area under the even-odd rule, and sets their roles. Rings
+ * that cross keep their roles, or become outer rings if they have none. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_osm_arrange(camber_osm_assembly *assembly);
 
 #endif

@@ -1,15 +1,15 @@
 /* Reads the lines of a PBF file of OpenStreetMap into a set of features.
  *
- * Input: a path. Output: the same lines, with the same attributes and in the same order, as those of GDAL's layer
- * "lines" with the rules in gdal/osmconf.ini, equal to the last bit. The file is read in two passes, and hardly any
- * blob is read twice: first the ways, which are at its end, then the places of the nodes that the ways name. So a node
- * takes little more than eight bytes, whatever else the file contains. A third pass packs the ways with these places
- * and frees the nodes; a fourth makes world coordinates. Each pass uses several threads.
+ * Input: a path. Output: the lines of GDAL's layer "lines" with the rules in gdal/osmconf.ini. They have the same
+ * attributes and the same order as in GDAL, and their coordinates are equal to the last bit. The file is read in two
+ * passes, and hardly any blob is read twice: first the ways, which are at its end, then the places of the nodes that
+ * the ways name. So a node takes little more than eight bytes, whatever else the file contains. A third pass packs the
+ * ways with these places and frees the nodes; a fourth makes world coordinates. Each pass uses several threads.
  *
  * If areas are wanted, the relations that name ways are read before the ways, and the sea is made from the ways of the
- * coast (coast.h). If points are wanted, nodes are read once more, for those with tags; they are GDAL's layer "points".
- * If the kinds of entities are not in the usual order, reading starts again: each pass then searches the whole file for
- * its kind, which takes more time, but no more memory. */
+ * coast (coast.h). If points are wanted, the nodes are read once more to find those with tags, which are GDAL's layer
+ * "points". If the kinds of entities are not in the usual order, reading starts again. Each pass then searches the
+ * whole file for entities of its kind, which takes more time but no more memory. */
 #include "osm/osm.h"
 
 #include "base/threads.h"
@@ -24,7 +24,7 @@
 
 #include <math.h>
 
-static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* fractions of the progress */
+static const double WAYS_SHARE = 0.3, NODES_SHARE = 0.75, PACKED_SHARE = 0.85; /* progress after each pass */
 /* The names of the layers in OGR. */
 static const char LAYER[] = "lines", RELATION_LAYER[] = "multipolygons", POINT_LAYER[] = "points";
 
@@ -34,16 +34,16 @@ typedef struct reader {
     const camber_source_desc *desc;
     camber_osm_where where;
     camber_osm_ways ways;
-    camber_osm_coast coast; /* its ways, if the sea is wanted */
+    camber_osm_coast coast; /* the ways of the coast, if the sea is wanted */
     size_t coast_key;       /* the index of the property "natural" in the style; SIZE_MAX: the sea is not wanted */
     const char *coastline;  /* the interned value of a coast */
     camber_value *values;   /* schema->property_count: a set of tags */
     uint32_t layer;
     unsigned kinds;                           /* CAMBER_KIND_*: the kinds that are read */
-    uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, for each set of tags: index + 1; 0: not needed yet */
-    size_t met; /* how many of the relations' ways were added, in the order in which they were met */
+    uint32_t *classes[CAMBER_GEOMETRY_KINDS]; /* by kind, for each set of tags: its class + 1; 0: not needed yet */
+    size_t met; /* how many of the relations' ways were added so far, in the order in which they were met */
     size_t skipped, clamped, splits;
-    size_t nodes, missing; /* nodes that ways name, and those of them that the file does not have */
+    size_t nodes, missing; /* how many nodes ways name, and how many of these the file does not have */
     unsigned threads;
 } reader;
 
@@ -56,19 +56,19 @@ static bool reads(const camber_source_desc *desc) {
 /* ---- Ways become lines, on any thread ---- */
 
 typedef struct made_way {
-    uint32_t tags;       /* the bits of the way, but the area's is only set if the line is closed */
-    uint32_t line_count; /* lines, or outlines; the ring comes after them */
+    uint32_t tags;       /* the bits of the way, but the bit for areas is set only if the line is closed */
+    uint32_t line_count; /* how many lines or outlines the way has; its ring comes after them */
     bool has_ring, is_coast;
-    uint32_t place_count; /* places in the run, of a coast or of a way of a relation */
+    uint32_t place_count; /* for a coast or a way of a relation: how many places in the run it has */
     size_t first_place;
 } made_way;
 
 typedef struct made_run {
     camber_osm_block points, ends, ways; /* pairs of doubles, size_t, made_way */
-    camber_osm_block places, world;      /* of the run's nodes: uint64_t, and pairs of doubles */
+    camber_osm_block places, world;      /* for the run's nodes: uint64_t, and pairs of doubles */
     size_t way_count;
     camber_world_lines lines;
-    camber_features_stats stats; /* of its rings */
+    camber_features_stats stats; /* counts for the run's rings */
 } made_run;
 
 static void free_run(camber_context *context, void *slot) {
@@ -96,7 +96,7 @@ static void project_run(const camber_osm_ways *ways, const camber_osm_run *from,
     }
 }
 
-/* Adds the nodes of a way. first: the index of the first of them in the run. */
+/* Adds the nodes of a way. first: the index of its first node in the run. */
 static void add_nodes(const camber_osm_way *way, size_t first, made_run *run) {
     const double *world = (const double *)(const void *)run->world.bytes;
     const uint64_t *places = (const uint64_t *)(const void *)run->places.bytes;
@@ -105,7 +105,7 @@ static void add_nodes(const camber_osm_way *way, size_t first, made_run *run) {
         run->lines.clamped_points += fabs((double)camber_osm_latitude(places[i])) > CAMBER_MERCATOR_LATITUDE * 1.0e7;
 }
 
-/* Makes a ring of a closed way. counts: clamped points were not already counted for an outline. */
+/* Makes a ring from a closed way. counts: clamped points are counted, because they were not counted for an outline. */
 static bool make_ring(const camber_osm_way *way, size_t node, made_run *run, bool counts) {
     camber_world_lines *lines = &run->lines;
     camber_rings rings = {.stats = &run->stats};
@@ -199,13 +199,14 @@ static camber_status find_class(reader *self, uint32_t set, camber_geometry_kind
     return CAMBER_OK;
 }
 
-/* Lines of a run, or a point: those of one feature. */
+/* The lines of one feature in a run, or its point. */
 typedef struct line_span {
     const camber_world_lines *lines;
     size_t first, count;
 } line_span;
 
-/* Adds lines as one feature of the kind, if it is read; of a label's kind, if a symbol layer takes it. */
+/* Adds lines as one feature, if its kind is read. A feature of a label's kind is added only if a symbol layer takes
+ * it. */
 static camber_status add_lines(reader *self, uint32_t set, camber_geometry_kind kind, const line_span *span) {
     const camber_world_lines *lines = span->lines;
     uint32_t index;
@@ -222,7 +223,7 @@ static camber_status add_lines(reader *self, uint32_t set, camber_geometry_kind 
     return status;
 }
 
-/* filled: its ring is drawn; otherwise a relation is filled instead. */
+/* Adds the features of a way. filled: the way's ring is drawn; otherwise a relation is filled instead. */
 static camber_status add_way(reader *self, const made_way *way, bool filled, const camber_world_lines *lines,
                              size_t *line) {
     const bool area = way->tags & CAMBER_OSM_WAY_AREA;
@@ -269,7 +270,7 @@ static camber_status add_run(void *user, size_t part, void *slot) {
 
 /* ---- Nodes become points ---- */
 
-/* Makes points of the nodes with tags. They come before the lines and have a layer of their own, as in GDAL. */
+/* Makes points from the nodes with tags. They come before the lines and have a layer of their own, as in GDAL. */
 static camber_status make_points(reader *self) {
     camber_osm_ways *ways = &self->ways;
     camber_world_lines world = {.context = self->context};
@@ -345,7 +346,7 @@ static camber_status add_rings(reader *self, made_area *area) {
     return status;
 }
 
-/* Adds them once more for symbol layers, if one takes the area. Nothing of it is counted twice. */
+/* Adds the rings once more for symbol layers, if one takes the area. This time nothing is counted. */
 static camber_status add_label(reader *self, uint32_t set, made_area *area) {
     const camber_features_stats stats = self->features->stats;
     const size_t splits = self->splits, clamped = area->lines.clamped_points;
@@ -381,7 +382,7 @@ static camber_status add_relation(reader *self, size_t relation, made_area *area
     return status == CAMBER_OK && any && self->kinds & CAMBER_KIND_LABEL_AREA ? add_label(self, set - 1, area) : status;
 }
 
-/* Finds the class of the sea: water, like that of ponds. */
+/* Finds the class of the sea, which is water, as ponds are. */
 static camber_status find_sea_class(reader *self, uint32_t *index) {
     const size_t count = self->features->schema->property_count;
     camber_value *values = camber_alloc_zero(self->context, count, sizeof *values);
@@ -395,7 +396,7 @@ static camber_status find_sea_class(reader *self, uint32_t *index) {
     return status;
 }
 
-/* Makes an area of the sea from the coast. */
+/* Makes an area for the sea from the coast. */
 static camber_status make_sea(reader *self, made_area *area) {
     area->is_sea = true;
     camber_status status = camber_osm_coast_fill(&self->coast, &area->assembly);
@@ -575,7 +576,7 @@ static camber_status want_sea(reader *self, camber_osm_box box) {
     return camber_features_intern(self->features, "coastline", &self->coastline);
 }
 
-/* If nothing passes a filter, leaves it to GDAL's reader to explain why, provided that GDAL can read the file. */
+/* If nothing passes a filter, leaves the file to GDAL's reader, which explains why, provided that GDAL can read it. */
 static camber_status explain_filter(const reader *self, const camber_osm_file *file, bool *declined) {
     camber_osm_beyond beyond;
     const camber_status status = camber_osm_find_beyond(file, self->threads, &beyond);
@@ -657,7 +658,7 @@ static camber_status read_pbf(camber_features *features, const camber_source_des
     return CAMBER_OK;
 }
 
-/* Fails if GDAL would read wrongly what this reader leaves to it. */
+/* Fails if GDAL would misread the file that this reader leaves to it. */
 static camber_status leave(camber_context *context, const camber_source_desc *desc) {
     camber_osm_file file;
     camber_osm_beyond beyond;

@@ -1,9 +1,9 @@
-/* Reads the ways of a file, and before them the relations that are areas; also the nodes with tags.
+/* Reads the relations of a file that are areas, then its ways, and its nodes with tags.
  *
  * Input: blobs, and the keys that a style names. Output: for each way with a tag and at least two nodes, its set of
  * tags and the ids of its nodes, and the set of all ids. Ways that relations name are read even without tags. For each
  * node with a tag: its set of tags and its position. Threads decode blocks: tags become indices of strings, and
- * entities with equal tags share a set. The caller's thread then merges a block's sets into those of the file. */
+ * entities with equal tags share a set. The caller's thread then merges each block's sets into the file's. */
 #include "osm/ways.h"
 
 #include "features/osm_keys.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <strings.h>
 
-/* A run is the number of nodes from which one thread makes lines at a time. */
+/* RUN_NODES: one thread makes lines from about this many nodes at a time. */
 enum { RUN_NODES = 16384, FIRST_SLOTS = 1024, FIRST_LEAF_SLOTS = 16384 };
 enum { ID = 1, KEYS = 2, VALUES = 3, WAY_NODES = 8, WAY_LATITUDES = 9, STRING = 1 };
 enum { NODE_LATITUDE = 8, NODE_LONGITUDE = 9, DENSE_LATITUDES = 8, DENSE_LONGITUDES = 9, DENSE_TAGS = 10 };
@@ -33,7 +33,7 @@ static camber_osm_key *find_key(camber_osm_ways *ways, const char *name) {
     return find_key_of(ways, (camber_osm_text){name, strlen(name)});
 }
 
-/* Adds the filter's keys. Returns false if one differs from another key only in its case, which SQL ignores. */
+/* Adds the filter's keys. Returns false if two keys differ only in their case, which SQL ignores. */
 static bool find_filter_keys(camber_osm_ways *ways) {
     const camber_osm_where *where = ways->where;
     for (uint32_t i = 0; where && i < where->key_count; i++) {
@@ -47,7 +47,7 @@ static bool find_filter_keys(camber_osm_ways *ways) {
     return true;
 }
 
-/* OGR's own columns, which are not tags. */
+/* Whether this is the name of one of OGR's own columns, which are not tags. */
 static bool is_column(const char *name) {
     return strncmp(name, "osm_", 4) == 0 || strcmp(name, "other_tags") == 0 || strcmp(name, "all_tags") == 0;
 }
@@ -123,8 +123,8 @@ typedef struct block {
     bool has_ways, has_places;
 } block;
 
-/* The ids that a block names, in the form of a leaf of the node set. So the file's leaves are looked up once per block.
- */
+/* A leaf of a block: the ids in the range of one leaf of the node set that the block names, as a bitmap. So each leaf
+ * of the node set is looked up only once per block. */
 typedef struct block_leaf {
     uint64_t id; /* the upper bits of the ids */
     uint64_t bits[CAMBER_OSM_LEAF_WORDS];
@@ -191,7 +191,7 @@ static bool list_strings(decoder *self, camber_wire table) {
     return true;
 }
 
-/* Returns the key that a string is, or NULL if nobody looks for it. */
+/* Returns the key whose name is this string, or NULL if nothing reads a key with this name. */
 static const camber_osm_key *key_of(const decoder *self, uint32_t string) {
     uint16_t *role = (uint16_t *)(void *)self->to->roles.bytes + string;
     if (*role == 0) {
@@ -237,7 +237,7 @@ static bool grow_slots(decoder *self) {
     return true;
 }
 
-/* Looks up the set after the block's last one among the block's sets, or adds it. */
+/* Looks up the new set, which is stored after the block's last set, among the block's sets, or adds it. */
 static bool find_set(decoder *self, uint32_t *set) {
     block *to = self->to;
     const size_t count = self->property_count;
@@ -256,7 +256,7 @@ static bool find_set(decoder *self, uint32_t *set) {
     return true;
 }
 
-/* The tags of an entity, interpreted. */
+/* The meaning of an entity's tags. */
 typedef struct tag_facts {
     bool area, passes; /* passes: the filter accepts it */
     size_t count;
@@ -321,7 +321,7 @@ static bool grow_leaves(decoder *self) {
     return true;
 }
 
-/* Looks up a leaf among those of the block, or adds it. It then is the last leaf used. */
+/* Looks up a leaf among the block's leaves, or adds it, and remembers it as the last leaf. */
 static bool find_leaf(decoder *self, uint64_t leaf_id) {
     block *to = self->to;
     if (to->leaf_count >= to->leaf_slot_count / 2 && !grow_leaves(self))
@@ -360,7 +360,7 @@ static bool add_way(decoder *self, camber_wire ids, uint64_t count, camber_osm_w
         ((block_leaf *)(void *)to->leaves.bytes)[self->last_leaf].bits[low >> 6] |= UINT64_C(1) << (low & 63);
         *at++ = self->last_leaf << CAMBER_OSM_LEAF_BITS | low;
     }
-    if (ids.at < ids.end) /* the last one is cut off */
+    if (ids.at < ids.end) /* the last id is cut off */
         return camber_osm_fail(self->failure, "a way that does not parse");
     to->id_count += (size_t)count;
     ((camber_osm_way *)(void *)to->ways.bytes)[to->way_count++] = way;
@@ -375,7 +375,7 @@ static uint32_t find_member(decoder *self, uint64_t id) {
     return found ? CAMBER_OSM_WAY_MEMBER : 0;
 }
 
-/* Records the way that was found last. */
+/* Records the index of the way that find_member found last. */
 static bool add_member_index(decoder *self) {
     block *to = self->to;
     if (!camber_osm_reserve(self->pass, &to->members, (to->member_count + 1) * sizeof(uint32_t), self->failure))
@@ -422,7 +422,7 @@ static bool read_way(decoder *self, camber_wire wire) {
            add_way(self, ids, count, (camber_osm_way){set * CAMBER_OSM_WAY_BITS | bits, (uint32_t)count});
 }
 
-/* relations_allowed: they were read before, or do not matter. */
+/* Reads a group. relations_allowed: relations were read before, or do not matter. */
 static bool read_group(decoder *self, camber_wire group, bool nodes_allowed, bool relations_allowed, bool any_order) {
     uint64_t key;
     while (camber_wire_next(&group, &key)) {
@@ -771,7 +771,7 @@ static camber_status grow_table(camber_osm_ways *ways, size_t count) {
     return CAMBER_OK;
 }
 
-/* Looks up a block's set among those of the file, or adds it. */
+/* Looks up a block's set among the file's sets, or adds it. */
 static camber_status add_set(camber_osm_ways *ways, const block *from, const uint32_t *strings, uint32_t *set) {
     const camber_schema *schema = ways->features->schema;
     const size_t count = schema->property_count;
@@ -831,7 +831,7 @@ static camber_status add_ids(camber_osm_ways *ways, const block *from) {
     return status;
 }
 
-/* Adds the sets of a block to those of the file; ways->local gets their indices. */
+/* Adds the sets of a block to the file's sets, and stores their indices in ways->local. */
 static camber_status add_sets(camber_osm_ways *ways, const block *from) {
     const uint32_t *sets = (const uint32_t *)(const void *)from->sets.bytes;
     if (!camber_grow(ways->context, &ways->local, &ways->local_capacity, from->set_count, sizeof *ways->local))

@@ -39,7 +39,7 @@ typedef struct camber_osm_point {
 } camber_osm_point;
 
 /* Consecutive ways of one block, and the positions at which the ids of their nodes and the leaves of the block begin.
- * Later also the position of their places (packed.h). */
+ * After packing, also the position of their places (packed.h). */
 typedef struct camber_osm_run {
     size_t first_way, way_count, first_id, first_leaf, first_packed, node_count;
 } camber_osm_run;
@@ -61,16 +61,16 @@ typedef struct camber_osm_ways {
     size_t leaf_count, leaf_capacity;
     camber_osm_run *runs;
     size_t run_count, run_capacity;
-    size_t node_count; /* over all ways; a node counts each time it is named */
+    size_t node_count; /* the number of nodes of all ways; a node counts each time it is named */
     camber_osm_node_set nodes;
-    uint32_t *packed; /* places in packed form, once they are known (packed.h); each run starts afresh */
+    uint32_t *packed; /* places in packed form, after packing (packed.h); a run does not depend on the one before */
     size_t packed_count, packed_capacity;
 
     camber_osm_point *points; /* empty unless points are read */
     size_t point_count, point_capacity;
 
     /* Sets of tags. Two sets differ in at least one property that the style reads. */
-    const char **values; /* set_count * schema->property_count, interned. NULL: it does not have the key */
+    const char **values; /* set_count * schema->property_count, interned. NULL: the set does not have the key */
     size_t set_count, value_capacity;
     uint32_t *slots; /* a hash table: index + 1; 0: free */
     size_t slot_count;
@@ -88,14 +88,16 @@ void camber_osm_ways_free(camber_osm_ways *ways);
 
 typedef struct camber_osm_ways_desc {
     const camber_osm_file *file;
-    size_t first_blob; /* the first blob that may have a way, or a relation */
-    size_t end_blob;   /* for ways: where relations begin, if the file is in order; for nodes: where nodes end */
+    size_t first_blob; /* the first blob that may have a way (or a relation, when relations are read) */
+    size_t end_blob;   /* for ways: the blob where relations begin, if the file is in order; for nodes: the blob where
+                          nodes end */
     bool any_order;    /* nodes, ways and relations may come in any order */
     unsigned threads;
-    double from, to; /* range of the progress */
+    double from, to; /* the progress before and after this pass */
 } camber_osm_ways_desc;
 
-/* Reads the relations of a file that are areas; call it before its ways are read. *declined: ids are out of range. */
+/* Reads the relations of a file that are areas. Call this before the file's ways are read. *declined: ids are out of
+ * range. */
 camber_status camber_osm_relations_read(camber_osm_ways *ways, const camber_osm_ways_desc *desc, bool *declined);
 /* Reads the ways of a file. *declined: nodes come after ways, ids are out of range, or relations that matter come
  * before ways. */

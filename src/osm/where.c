@@ -2,7 +2,7 @@
  *
  * Input: a filter in OGR's SQL. Output: whether a way's tags pass it. As in GDAL, a comparison with a missing key
  * fails, strings are compared without regard to case, and AND binds more tightly than OR. NOT is left to GDAL, because
- * its versions treat missing keys differently under it. */
+ * its versions differ in how NOT treats missing keys. */
 #include "osm/where.h"
 
 #include "features/osm_keys.h"
@@ -53,7 +53,7 @@ static bool take_word(parser *self, const char *wanted) {
     return true;
 }
 
-/* A string without escapes. */
+/* Takes a string in quotes that has no escapes. */
 static bool take_string(parser *self, char quote, camber_osm_text *text) {
     const char begin[] = {quote, 0};
     if (!take_sign(self, begin))

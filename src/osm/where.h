@@ -17,7 +17,7 @@ typedef struct camber_osm_text {
 
 typedef enum camber_osm_step_kind {
     CAMBER_OSM_STEP_EQUAL = 0, /* the key's value is this text */
-    CAMBER_OSM_STEP_DIFFERENT, /* it has another value */
+    CAMBER_OSM_STEP_DIFFERENT, /* the key has another value */
     CAMBER_OSM_STEP_MISSING,
     CAMBER_OSM_STEP_PRESENT,
     CAMBER_OSM_STEP_AND, /* combines the last two results */
@@ -40,7 +40,7 @@ typedef struct camber_osm_where {
 
 /* Returns false if the filter is invalid, or uses something that this reader does not support. */
 bool camber_osm_where_parse(const char *text, camber_osm_where *where);
-/* values: key_count of them. If at is NULL, the way does not have the key. */
+/* values: key_count entries. If `at` of an entry is NULL, the way does not have the key. */
 bool camber_osm_where_passes(const camber_osm_where *where, const camber_osm_text *values);
 
 #endif

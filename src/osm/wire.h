@@ -1,5 +1,5 @@
-/* Reads the wire format of Protocol Buffers: keys, varints, and fields with a length. A reader never leaves its bytes,
- * whatever they say. If they are inconsistent, it becomes bad and returns zeros from then on. */
+/* Reads the wire format of Protocol Buffers: keys, varints, and fields with a length. A reader never reads outside its
+ * bytes, whatever they contain. If they are inconsistent, it becomes bad and returns zeros from then on. */
 #ifndef CAMBER_OSM_WIRE_H
 #define CAMBER_OSM_WIRE_H
 
@@ -14,7 +14,7 @@ typedef struct camber_wire {
 /* The types of fields in OpenStreetMap's messages. */
 enum { CAMBER_WIRE_VARINT = 0, CAMBER_WIRE_BYTES = 2 };
 
-/* A field's number and type, in the form in which they precede the field. */
+/* The key of a field, which is stored before the field: its number and its type. */
 #define CAMBER_WIRE_KEY(number, type) ((uint64_t)(number) << 3 | (uint64_t)(type))
 
 static inline uint64_t camber_wire_fail(camber_wire *wire) {
@@ -36,13 +36,13 @@ static inline uint64_t camber_wire_varint(camber_wire *wire) {
     return camber_wire_fail(wire);
 }
 
-/* Reads a zigzag-coded number. */
+/* Reads a number in zigzag coding. */
 static inline int64_t camber_wire_signed(camber_wire *wire) {
     const uint64_t value = camber_wire_varint(wire);
     return (int64_t)(value >> 1 ^ (0 - (value & 1)));
 }
 
-/* Writes a zigzag-coded number, and returns the position after it. */
+/* Writes a number in zigzag coding, and returns the position after it. */
 static inline uint8_t *camber_wire_put_signed(uint8_t *at, int64_t number) {
     uint64_t value = (uint64_t)number << 1 ^ (number < 0 ? UINT64_MAX : 0);
     for (; value >= 128; value >>= 7)

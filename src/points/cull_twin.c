@@ -1,4 +1,4 @@
-/* The CPU twin of cull_count and cull_emit: projects a network on the host, and gives the visible lines as polylines.
+/* The CPU twin of cull_count and cull_emit: projects a network on the host, and returns the visible lines as polylines.
  *
  * Input: a network, a camera, strokes. Output: camber_polylines with the slots that the device would make; or lines of
  * points in px. Main idea: it runs the kernels' own walk (kernels/cull.h), but entry by entry instead of chunk by
@@ -65,7 +65,7 @@ static void count_slots(camber_polylines *p) {
     }
 }
 
-/* Makes count slots, padded to whole blocks, and the array of where each entry begins. */
+/* Makes `count` slots, padded to whole blocks, and the array that says where each entry begins. */
 static camber_status make_slots(const camber_network *network, const camber_projection *projection, size_t count,
                                 camber_polylines *p) {
     camber_context *context = network->context;
@@ -157,7 +157,7 @@ static size_t last_of(const visible_lines *p, size_t first) {
 }
 
 /* Appends the visible lines of an entry. If the window cuts a ring, the line across the ring's seam consists of two
- * halves, and its end comes first in the slots. The end waits at `seam` until the beginning has been appended:
+ * halves, and its end is first in the slots. The end waits at `seam` until the beginning has been appended:
  *
  *     slots     S..e   b..S              S: the seam, the ring's first and last point
  *     line      b..S..e                  from b, where the window cuts, across the seam to e */

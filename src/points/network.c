@@ -6,8 +6,8 @@
  * camera without doubles.
  *
  *     1  check the entries, count their points, find their box
- *     2  store the points of each entry, stretch by stretch: an invalid point ends one; repeated points are dropped,
- * and those of too little importance. With arc lengths, sum up how far along its line each point is */
+ *     2  store the points of each entry, stretch by stretch: an invalid point ends a stretch; repeated points and
+ *        points of too little importance are dropped. With arc lengths, add up how far along its line each point is */
 #include "points/network.h"
 
 #include <assert.h>
@@ -64,8 +64,8 @@ static bool is_place(const camber_network_desc *desc, camber_network_entry entry
     return is_valid(desc->points[2 * point] + entry.shift_x, desc->points[2 * point + 1]);
 }
 
-/* Returns how many points may be stored: those that are important enough, and the ends. The bounding box includes only
- * these, so that it is the same if the caller has already dropped the others; with arc lengths it includes all. */
+/* Returns how many points may be stored: the important ones and the ends. The bounding box includes only these, so that
+ * it is the same if the caller has already dropped the others; with arc lengths it includes all. */
 static size_t add_polyline(const camber_network_desc *desc, camber_network_entry entry, bounds *box) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     size_t stored = 2;
@@ -245,7 +245,7 @@ static bool is_valid_ring(camber_network *n, const camber_network_desc *desc, ca
     return invalid == 0;
 }
 
-/* Stores an entry's points, a stretch between each two invalid points, or one for each dot. */
+/* Stores an entry's points, with a stretch between each two invalid points, or one for each dot. */
 static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
                                  capacities *room) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];

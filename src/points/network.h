@@ -15,15 +15,15 @@
 struct camber_network {
     camber_context *context;
     size_t holders;  /* the creator, and the meshes that hold it */
-    uint64_t serial; /* unique in the context, like that of polylines */
+    uint64_t serial; /* unique in the context, among networks and polylines */
     /* The position of step 0 and the length of a step, in world coordinates. */
     double x0, y0, step;
-    int32_t *x, *y; /* point_count of them, from 0 to 2^31 - 2 */
+    int32_t *x, *y; /* point_count coordinates, from 0 to 2^31 - 2 */
     float *importance;
     float *lengths; /* one per point: how far along its line it is, in steps. NULL: without arc lengths */
     float *totals;  /* one per stretch: how long its whole line is, in steps */
     size_t point_count;
-    camber_stretch *stretches; /* run_count stretches, and one after the last */
+    camber_stretch *stretches; /* stretch_count stretches, and one after the last */
     size_t stretch_count;
     uint32_t *entry_stretches; /* entry_count + 1: the first stretch of each entry */
     uint32_t *entry_rows;
@@ -36,10 +36,10 @@ struct camber_network {
  */
 camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
                                  const camber_tessellation_desc *desc, camber_projection *projection);
-/* Returns how many slots the camera makes of the points [begin, end) of the network. The host walks them. */
+/* Returns how many slots the points [begin, end) of the network give for the camera. The host walks the points. */
 uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
                                     size_t end);
-/* Returns how many chunks that many points have. A work-item walks one chunk. */
+/* Returns how many chunks `points` points have. A work-item walks one chunk. */
 static inline size_t camber_network_chunk_count(size_t points) {
     return (points + CAMBER_CULL_CHUNK - 1) / CAMBER_CULL_CHUNK;
 }

@@ -3,7 +3,7 @@
  * Input: the camera (where it looks, scale, bearing, pitch) and the strokes, whose widths and offsets decide how far
  * from the picture a line still matters. Output: camber_projection, in the network's steps and in px. Main idea:
  * doubles are used only here, once per frame. An origin near the camera is subtracted in integers, so that floats are
- * exact enough for what is left.
+ * exact enough for the rest.
  *
  *     seen     the box of steps that can reach the picture; stretches whose boxes do not touch it are skipped
  *     window   the picture and a margin, in px; segments are cut there
@@ -106,8 +106,8 @@ typedef struct trapezoid {
     double side, slope, far_y, near_y;
 } trapezoid;
 
-/* The trapezoid of a camera, grown by reach for strokes that reach into the picture from outside, and by a pixel on
- * each side. Since a pixel may reach the horizon, the trapezoid ends at twice the depth of the far plane. */
+/* Returns the trapezoid of a camera, grown by `reach` for strokes that reach into the picture from outside, and by a
+ * pixel on each side. Since a pixel may reach the horizon, the trapezoid ends at twice the depth of the far plane. */
 static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspective *p, double reach) {
     const double half_x = 0.5 * camera->width + 1.0, half_y = 0.5 * camera->height + 1.0, slope = p->fall * half_x;
     const double seen_y = p->far_y - 1.5, near = half_y * camber_perspective_depth(p, half_y) / p->cosine;
@@ -119,7 +119,7 @@ static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspect
                        .near_y = near + reach + 4.0};
 }
 
-/* Replaces the window and the box of a projection by those of a camera with a pitch. */
+/* Sets the window and the box of a projection for a camera with a pitch. */
 static void aim_pitched(const camber_network *network, const camber_camera *camera, double reach,
                         camber_projection *p) {
     const camber_perspective perspective = camber_perspective_of(camera->pitch_deg, camera->height);

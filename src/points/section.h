@@ -20,7 +20,7 @@ camber_section camber_section_of(const camber_network *network, size_t first, si
 /* Returns how many bytes a section takes on the device. If it is not copied, the device borrows the points from the
  * host. */
 uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied);
-/* Returns the size of its largest buffer. */
+/* Returns the size of the section's largest buffer. */
 uint64_t camber_section_largest_bytes(const camber_network *network, const camber_section *section);
 /* Uploads the section. A device that uses host memory borrows the network's own arrays (zero copy). */
 camber_status camber_section_upload(const camber_device *device, const camber_network *network,

@@ -17,7 +17,7 @@ static camber_status add_range(camber_range_list *list, camber_slot_range range)
     return CAMBER_OK;
 }
 
-/* Lists the slots at which the brush changes within a range. polylines is NULL if it does not. */
+/* Lists the slots at which the brush changes within a range. polylines is NULL if the brush does not change. */
 static camber_status add_changes(camber_range_list *list, const camber_slot_range *range, const size_t *polylines) {
     camber_status status = CAMBER_OK;
     if (!polylines)
@@ -33,7 +33,7 @@ static camber_status add_changes(camber_range_list *list, const camber_slot_rang
     return status;
 }
 
-/* Adds the polylines [from, to) of a part. range has what is already known of it; polylines says where the brush
+/* Adds the polylines [from, to) of a part. range has the fields that are already known; polylines says where the brush
  * changes within it. */
 static camber_status add_polylines(camber_range_list *list, camber_slot_range range, size_t from, size_t to,
                                    const size_t *polylines) {
@@ -83,7 +83,7 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
     return status;
 }
 
-/* Orders ranges by part, and those of one part by drawing order. */
+/* Orders ranges by part, and the ranges of one part by drawing order. */
 static int compare_ranges(const void *left, const void *right) {
     const camber_slot_range *a = left, *b = right;
     const uintptr_t meshes[2] = {(uintptr_t)a->mesh, (uintptr_t)b->mesh};

@@ -1,18 +1,18 @@
 /* The OpenCL rasterizer draws the points of meshes in the stages setup -> bin_count -> bin_scan -> bin_scatter -> wind
- * (if there are polygons to fill) -> rasterize. The CPU twin makes the same bytes.
+ * (if there are polygons to fill) -> rasterize. The CPU twin computes the same bytes.
  *
  * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area, which
  * in this file is a rectangle of the picture. The kernels are built in variants, so that a plain frame does not pay for
  * features that it lacks:
  *
  * - 0: only brushes.
- * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
- *   float4s that it refers to. setup also writes arc lengths. A brush without features gets the same bytes as from the
- *   plain variant.
+ * - CAMBER_RASTER_RICH: scene.brush_ext has the features of each brush (kernels/features.h), and the side table has the
+ *   float4s that these refer to. setup also writes arc lengths. A brush without features is drawn with the same bytes
+ *   as by the plain variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED select a variant; the twin contains all of them, and
- * the scene selects. */
+ * the scene selects one. */
 #ifndef CAMBER_RASTER_RASTER_H
 #define CAMBER_RASTER_RASTER_H
 
@@ -29,11 +29,11 @@ typedef struct camber_raster_input {
     size_t first, end;
     size_t first_row; /* where its table begins among all rows */
     bool is_area;     /* the polylines are rings to fill: rows that are drawn have a half width of CAMBER_EDGE_PX */
-    size_t first_change, change_count; /* of the scene */
+    size_t first_change, change_count; /* among the scene's changes */
 } camber_raster_input;
 
 /* Everything that is drawn, in drawing order, with brushes in the same order; fills of the picture are only brushes.
- * Brushes of one layer are consecutive, and so are those of one group. */
+ * The brushes of one layer are consecutive, and so are the brushes of one group. */
 typedef struct camber_raster_scene {
     /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is stored as the bits of a camber_u32 */
     const float *rows;
@@ -80,7 +80,7 @@ void camber_raster_destroy(camber_raster *raster);
 /* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);
-/* The same, into a buffer of the caller. It holds camber_raster_bytes, and must live until pixels are unmapped or
+/* The same, into a buffer of the caller, which holds camber_raster_bytes and must live until pixels are unmapped or
  * something else is drawn. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, camber_buffer *pixels);
@@ -93,10 +93,11 @@ uint32_t camber_raster_widest(const camber_raster *raster);
 /* Returns how many slices the bands of the last drawn area took in total. */
 uint32_t camber_raster_slice_count(const camber_raster *raster);
 
-/* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
+/* ---- Stages in host memory, for proofs. Free them with camber_raster_stages_free ---- */
 
 typedef struct camber_raster_stages {
-    /* segment_count times CAMBER_SEGMENT_WORDS. For the edge of a ring only its ends and its brush, else 0 */
+    /* segment_count times CAMBER_SEGMENT_WORDS. The edge of a ring has only its ends and its brush; its other words are
+     * 0 */
     float *segments;
     float *edges;       /* segment_count / 16 times CAMBER_SIXTEEN_EDGES_WORDS. NULL: none, or shown as segments */
     uint32_t *boxes;    /* segment_count */
@@ -105,10 +106,10 @@ typedef struct camber_raster_stages {
     size_t segment_count;
     uint32_t *starts; /* list_count + 1 */
     size_t tile_count;
-    /* tiles; if there are polygons, followed by one list per row of tiles, with the edges that cross its top */
+    /* one list per tile; if there are polygons, then one per row of tiles, with the edges that cross its top */
     size_t list_count;
     uint32_t *lists; /* starts[list_count] */
-    uint8_t *rgba;   /* of the area */
+    uint8_t *rgba;   /* pixels of the area */
 } camber_raster_stages;
 
 /* Reads the stages of the last drawn area: the last slice of its last band. */
@@ -129,7 +130,7 @@ typedef struct camber_slot_range {
     size_t first_row;
     bool is_area;
     bool among_edges;                  /* there are edges of rings before and after it: see segment.h */
-    size_t first_change, change_count; /* in the list; those of the same part */
+    size_t first_change, change_count; /* the part's changes, in the list */
     size_t changes_before;             /* changes of the same input before this range */
 } camber_slot_range;
 
@@ -139,15 +140,15 @@ typedef struct camber_range_list {
     camber_slot_range *ranges;
     uint32_t *changes; /* slots of a part at which the brush changes, ascending within a range */
     size_t count, capacity, segment_count, change_count, change_capacity;
-    camber_slot_finder finder;   /* for the part of the last query */
+    camber_slot_finder finder;   /* finder for the part of the last query */
     size_t first_edge, end_edge; /* all edges of rings are among these segments; 0 and 0: there are no polygons */
 } camber_range_list;
 
-/* Lists the ranges sorted by part, those of one part in drawing order. */
+/* Lists the ranges, sorted by part; the ranges of one part are in drawing order. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_range_list *list);
 void camber_raster_free_ranges(camber_range_list *list);
-/* Copies the edges, at most [first_edge, end_edge), into the segments, and frees their own array. */
+/* Copies the edges, which are among [first_edge, end_edge), into the segments, and frees the array of edges. */
 void camber_raster_stages_show_edges(camber_context *context, camber_raster_stages *stages, size_t first_edge,
                                      size_t end_edge);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
@@ -155,7 +156,7 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
 static inline uint32_t camber_raster_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }
-/* These return the pixels from one row of an area's buffer to the next, and the bytes of the buffer, which holds whole
+/* These return the stride of an area's buffer, in px from one row to the next, and its bytes. The buffer holds whole
  * tiles. */
 static inline size_t camber_raster_stride_px(const camber_raster_area *area) {
     return (size_t)camber_raster_tiles(area->width) * CAMBER_TILE_PX;

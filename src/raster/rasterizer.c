@@ -16,8 +16,8 @@
  * for every tile. A GPU has more chunks, because it needs many work-items.
  * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells; each
  * walks the list until its row is full. Edges of rings have to be walked to their end. So if there are any, such a tile
- * must also have more than one in SHARES of what each of the device's processors draws, and it must be drawn in one
- * slice, because its rows share the edges that they spill. */
+ * must also have more than one in SHARES of the segments that each of the device's processors draws, and it must be
+ * drawn in one slice, because its rows share the edges that they spill. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
@@ -49,7 +49,8 @@ static camber_status settle(camber_raster *raster) {
     return status;
 }
 
-/* Starts a stage's kernel for a number of jobs. Each is a work-group of one work-item, or of one work-item per cell. */
+/* Starts a stage's kernel for job_count jobs. Each job is a work-group of one work-item, or of one work-item per cell.
+ */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
     const size_t a_job = stage == STAGE_RASTERIZE && camber_raster_draws_cells(raster) ? CAMBER_CELLS : 1;
@@ -82,7 +83,7 @@ static bool cut_range(const camber_raster *raster, camber_slot_range *range) {
     return range->first < range->end;
 }
 
-/* Starts setup for ranges of one part with that many work-items. */
+/* Starts setup for ranges of one part. */
 static camber_status set_up(camber_raster *raster, const camber_setup_args *args, uint32_t count, size_t items,
                             const camber_mesh_part *part) {
     const camber_status status = camber_raster_put(raster, BUFFER_SETUPS, args, count * sizeof *args);
@@ -187,7 +188,7 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
     return status;
 }
 
-/* Adds the tiles' totals up on the host, which gives where each list begins. *fits is false if the lists are too long
+/* Adds the tiles' totals up on the host, which says where each list begins. *fits is false if the lists are too long
  * and the band or the slice can still be halved. */
 static camber_status start_lists(camber_raster *raster, bool *fits) {
     const camber_device *device = raster->device;
@@ -228,7 +229,7 @@ static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, 
     return run(raster, STAGE_BIN_SCATTER, fill, 7, chunk_count);
 }
 
-/* Computes the winding numbers that edges cause to the right of them. */
+/* Computes how edges change the winding numbers to their right. */
 static camber_status wind_rows(camber_raster *raster, camber_tile_grid of) {
     if (raster->list_count == raster->tile_count)
         return CAMBER_OK;
@@ -300,7 +301,7 @@ static void put_job(camber_raster *raster, size_t job, size_t tile, uint32_t row
                                                 : spill;
 }
 
-/* Lists the jobs for the tiles that the slice draws; the last slice draws all tiles. Heavy tiles come first, with one
+/* Lists the jobs for the tiles that the slice draws; the last slice draws all tiles. Heavy tiles are first, with one
  * job per row of cells, and then whole tiles. */
 static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
@@ -328,7 +329,7 @@ static camber_status list_jobs(camber_raster *raster, camber_spill_args k, size_
 /* Lays out the planes of a spill: five for the brush and the picture, three for unions or two for areas, four for the
  * group and for the layer, and one for masks. */
 static camber_spill_args plan_spill(const camber_raster *raster, const camber_raster_scene *scene) {
-    const bool areas = raster->end_edge > 0; /* that have edges, unlike fills of the picture */
+    const bool areas = raster->end_edge > 0; /* areas that have edges, unlike fills of the picture */
     bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
         unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
@@ -400,7 +401,7 @@ static camber_status prepare_rich(camber_raster *raster, const camber_raster_sce
     return status;
 }
 
-/* The buffers that have words for each segment: BUFFER_SEGMENTS and those after it. */
+/* The buffers that have words for each segment: BUFFER_SEGMENTS and the ones after it. */
 enum { SEGMENT_BUFFERS = BUFFER_PLANES - BUFFER_SEGMENTS + 1, MOST_SEGMENTS = 1 << 20 };
 typedef struct segment_words {
     size_t of[SEGMENT_BUFFERS], all;
@@ -512,8 +513,8 @@ static camber_status draw_band(camber_raster *raster, const listed_scene *p, boo
 }
 
 /* Draws the area's bands. The first band is the whole area. A band whose lists or spills do not fit is halved, and so
- * are those after it. A band of `sure` rows can always be spilled, so a lack of room for spills halves no band below
- * that. */
+ * are the bands after it. A band of `sure` rows can always be spilled, so a lack of room for spills never makes a band
+ * smaller than that. */
 static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
     const uint32_t sure = (uint32_t)(most_spills(raster, plan_spill(raster, p->scene)) / raster->columns);
@@ -557,7 +558,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = draw_bands(raster, &p);
     const camber_status settled = settle(raster);
     if (status != CAMBER_OK)
-        /* the caller may free the scene, so everything that was put must have been copied */
+        /* the caller may free the scene, so the device must have copied everything that was put */
         camber_device_settle(raster->device);
     status = status == CAMBER_OK ? settled : status;
     camber_raster_free_ranges(&p.list);

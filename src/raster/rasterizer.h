@@ -12,7 +12,7 @@ enum {
     BUFFER_CHANGES, /* slots at which the brush changes */
     BUFFER_SETUPS,  /* arguments of setup for the ranges of a part */
     BUFFER_SEGMENTS,
-    BUFFER_EDGES, /* of rings */
+    BUFFER_EDGES, /* edges of rings */
     BUFFER_BOXES,
     BUFFER_ARC_LENGTHS,
     BUFFER_PLANES,
@@ -43,7 +43,7 @@ struct camber_raster {
     unsigned variant;        /* variant of the last drawing */
     camber_buffer *buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    camber_setup_args *setups; /* for the slice's ranges. This and the next are in host memory */
+    camber_setup_args *setups; /* for the slice's ranges. This array and the next are in host memory */
     size_t setup_capacity;
     uint32_t *starts, *jobs;
     uint32_t *spills; /* number of the spill of each tile of the band. UINT32_MAX: it has none */
@@ -54,10 +54,10 @@ struct camber_raster {
     camber_raster_area band;
     camber_buffer *given;                /* the caller's buffer for the pixels; NULL: the rasterizer's own */
     uint32_t columns;                    /* tiles */
-    size_t first_segment, segment_count; /* of the slice */
+    size_t first_segment, segment_count; /* segments of the slice */
     size_t first_edge, end_edge;         /* as in camber_range_list */
     size_t tile_count;
-    size_t list_count; /* lists of tiles, followed by those of rows of tiles if there are polygons */
+    size_t list_count; /* lists of tiles, then lists of rows of tiles if there are polygons */
     uint32_t slice_count;
     camber_drawing_memory memory;
     camber_raster_pending pending[CAMBER_RASTER_PENDING];
@@ -70,7 +70,7 @@ static inline bool camber_raster_draws_cells(const camber_raster *raster) {
     return raster->device->lanes == 1;
 }
 
-/* Returns the words that a tile spills for a brush of polygons. */
+/* Returns how many words a tile spills for a brush of polygons. */
 static inline uint32_t camber_raster_area_words(const camber_raster *raster) {
     return camber_raster_draws_cells(raster) ? CAMBER_CELL_AREA_WORDS : CAMBER_AREA_WORDS;
 }
@@ -84,11 +84,11 @@ typedef enum camber_raster_eighths {
     CAMBER_RASTER_SPILLS = 2,
     CAMBER_RASTER_SEGMENTS = 4,
 } camber_raster_eighths;
-/* Returns the same in bytes; without a memory limit, as much as is useful. */
+/* Returns the given eighths in bytes; without a memory limit, as many bytes as are useful. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eighths eighths);
 /* Frees a buffer. */
 void camber_raster_drop(camber_raster *raster, int which);
-/* Makes a buffer at least that large. If it grows, its contents are lost. */
+/* Makes a buffer hold at least size_bytes. If it grows, its contents are lost. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
 /* Writes bytes to a buffer. They must stay valid until the caller has waited for the drawing. */
 camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes);

@@ -1,4 +1,4 @@
-/* The rasterizer's CPU twin: makes the same segments, boxes, lists and pixels as the kernels. It takes one segment,
+/* The rasterizer's CPU twin: computes the same segments, boxes, lists and pixels as the kernels. It takes one segment,
  * tile and pixel at a time, without chunks and sums. This file makes everything except the pixels. */
 #include "raster/twin.h"
 
@@ -42,7 +42,7 @@ static bool ends_segment(const point *b, bool is_edge) {
 /* The point that may end a segment in a slot, and the two before it. */
 typedef struct three_points {
     point b, before, first;
-    bool ends; /* b ends one */
+    bool ends; /* b ends a segment */
 } three_points;
 
 static three_points points_of(const camber_part_points *part, const camber_setup_args *r, int64_t slot) {
@@ -156,7 +156,7 @@ static void add_to_list(const camber_twin *t, size_t segment, uint32_t *count, b
     ++*count;
 }
 
-/* Does the same as each_tile for the rows of tiles whose tops it may cross as the edge of a ring. */
+/* Does the same as each_tile for the rows of tiles whose tops the segment may cross as the edge of a ring. */
 static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box) || segment < t->first_edge || segment >= t->end_edge)
@@ -165,7 +165,7 @@ static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, boo
         add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
 }
 
-/* Counts a segment in each tile that it touches, or puts it into their lists. */
+/* Counts a segment in each tile that it touches, or adds it to their lists. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;

@@ -1,7 +1,8 @@
 /* The CPU twin of rasterize: draws the pixels of an area, tile by tile, from the tiles' lists of segments.
  *
- * Input: the segments, lists and brushes of a camber_twin. Output: its area's pixels. The twin only walks: every tile,
- * every segment of its list, every cell, every pixel, one after another (kernels/draw_cells.h, which GPUs also run). */
+ * Input: the segments, lists and brushes of a camber_twin. Output: its area's pixels. The twin simply goes through
+ * every tile, every segment of the tile's list, every cell and every pixel, one after another (kernels/draw_cells.h,
+ * which GPUs also run). */
 #include "raster/twin.h"
 
 #include "kernels/draw_cells.h"

@@ -1,4 +1,4 @@
-/* The buffers of a part: which there are, and making, moving and releasing them. */
+/* The buffers of a part: lists, makes, moves and releases them. */
 #include "residency/memory.h"
 
 #include "kernels/arc_length.h"
@@ -25,7 +25,7 @@ static void release_inputs(const camber_device *device, camber_mesh_part *part, 
     part->borrowed = false;
 }
 
-/* Releases the input buffers that classify reads or writes, and keeps those of source lines. */
+/* Releases the input buffers that classify reads or writes, and keeps the buffers of source lines. */
 static void release_slots(const camber_device *device, camber_mesh_part *part) {
     release_inputs(device, part, INPUTS);
     part->slot_capacity = 0;

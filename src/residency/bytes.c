@@ -1,4 +1,4 @@
-/* Counts what the meshes of a device hold (gpu/memory.h has the memory limit). */
+/* Counts the bytes that the meshes of a device hold (gpu/memory.h has the memory limit). */
 #include "residency/memory.h"
 
 #include "kernels/arc_length.h"

@@ -45,8 +45,8 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
     return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* a buffer may not be empty */
 }
 
-/* Returns the bytes of a part's input, and of the arrays that the host keeps for it. The arrays count double and a
- * little more, because camber_grow makes them larger than requested, and never tiny. */
+/* Returns the bytes of a part's input and of the host's arrays for it. The arrays count double and a little more,
+ * because camber_grow makes them larger than requested, and never tiny. */
 uint64_t camber_part_slots_bytes(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
     const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CULL_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
@@ -87,12 +87,12 @@ uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_
     return mesh->buffer_copies * lacks;
 }
 
-/* How many eighths of the memory limit a part may take: a part of a single polyline, and one of several (gpu/memory.h).
- */
+/* How many eighths of the memory limit a part may take: a part of a single polyline, and a part of several polylines
+ * (gpu/memory.h). */
 enum { ALONE = 4, TOGETHER = 1 };
 
-/* Whether that many slots fit into the part's share of memory; always true for a single polyline, since it cannot be
- * cut. */
+/* Whether `slots` slots fit into the part's share of memory; always true for a single polyline, since it cannot be cut.
+ */
 static bool may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
     return part->polyline_count == 1 || needed_bytes(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
                                             camber_device_share(mesh->device, TOGETHER);

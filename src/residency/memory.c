@@ -6,15 +6,14 @@
  *
  *     1  parts of this mesh that hold buffers but no valid output
  *     2  parts, then sections, of the device's other meshes
- *     3  sections of this mesh, except that of the requesting part
+ *     3  sections of this mesh, except the requesting part's
  *     4  parts of this mesh with valid output, unless spare_made
  *
- * Within step 4 the victim is the part that will be needed last. A frame goes through the parts in order, and the next
- * frame begins again at the first; so counting from the requesting part (keep), the part needed last is the one before
- * keep:
+ * Within step 4 the victim is the part that will be needed last. A frame uses the parts in order, and the next frame
+ * begins again at the first; so, counting from the requesting part (keep), the part needed last is the one before keep:
  *
  *     parts      0   1   2  [3 keep]  4   5
- *     needed     4.  5.  6. now       2.  3.     so part 2 goes first */
+ *     needed     4.  5.  6. now       2.  3.     so part 2 is evicted first */
 #include "residency/memory.h"
 
 /* Returns the part to evict among those that hold something: one without valid output, else the one that is needed last
@@ -61,7 +60,7 @@ static bool drop_from_others(const camber_mesh *mesh) {
     return false;
 }
 
-/* Whether that many more bytes would exceed the device's memory limit or the budget of the run. */
+/* Whether more_bytes more bytes would exceed the device's memory limit or the budget of the run. */
 static bool lacks_room(const camber_device *device, uint64_t more_bytes) {
     return device->held_bytes + more_bytes > device->memory_bytes ||
            (device->host_memory && !camber_budget_has(device->context, more_bytes));

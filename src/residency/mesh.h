@@ -6,7 +6,7 @@
  *                                                                               +-> scan -> emit -> output
  *
  * A mesh is a list of parts, tessellated one after another. A part has input buffers (points, which are slots with
- * their join words, and what stages compute about them) and output buffers (records, and indices unless it is strips).
+ * their join words, and the results of stages for them) and output buffers (records, and indices unless it is strips).
  * If memory is limited, a part may lose its buffers at any time (memory.h), and is made again when it is needed. This
  * header declares the data; parts.h declares the operations on parts, src/stroke/ makes parts, and src/vertices/ makes
  * their output. */
@@ -23,7 +23,7 @@
 
 #include "camber_proof.h"
 
-/* Buffers of a part whose lines have an offset: the slots of the source lines, and what the offset stages compute about
+/* Buffers of a part whose lines have an offset: the slots of the source lines, and the results of the offset stages for
  * each of them. The part's own buffers then hold the offset lines. */
 typedef struct camber_source_line_buffers {
     camber_buffer *x, *y, *info, *clips, *counts, *places;
@@ -40,7 +40,7 @@ typedef struct camber_mesh_part {
     size_t first_slot, given_count; /* slots before the offset stages; given_count is padded to whole blocks */
     size_t slot_count;              /* slots that classify reads: the given ones, or those of the offset lines */
     size_t used_slots;              /* slot_count without the padding; kept while the part has no buffers */
-    /* For a network: the part's section, its points, and how many slots come before each chunk of the points. */
+    /* For a network: the part's section, its points, and how many slots are before each chunk of the points. */
     size_t section, first_point, end_point;
     uint32_t *chunk_bases; /* one for each chunk, and one after the last */
     size_t chunk_capacity;
@@ -59,25 +59,25 @@ typedef struct camber_mesh_part {
     bool scanned, emitted;
     uint64_t held_bytes;
     size_t record_count, vertex_count, index_count;
-    /* How many the previous parts have, which is where this one begins in the mesh. */
+    /* The counts of all previous parts, which say where this part begins in the mesh. */
     size_t first_record, first_vertex, first_index;
 } camber_mesh_part;
 
 /* The functions that make a mesh's output. src/vertices/ implements them. */
 typedef struct camber_mesh_output {
-    /* Counts a part's output while the mesh is tessellated, and numbers it after that of the previous parts. *fits is
-     * false if it is too large; then nothing is numbered, and the caller cuts the part. */
+    /* Counts a part's output while the mesh is tessellated, and numbers it after the output of the previous parts.
+     * *fits is false if the output is too large; then nothing is numbered, and the caller cuts the part. */
     camber_status (*count)(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
     /* Emits a part that has been counted. */
     camber_status (*emit)(camber_mesh *mesh, camber_mesh_part *part);
-    /* Counts and emits a part whose points were made again. Fails if the amount differs from before. */
+    /* Counts and emits a part whose points were made again. Fails if the counts differ from before. */
     camber_status (*remake)(camber_mesh *mesh, camber_mesh_part *part);
 } camber_mesh_output;
 
 /* A network that a mesh holds, its sections on the device, and its last projection. */
 struct camber_held_network {
     camber_network *network;
-    camber_projection projection; /* of the last tessellation */
+    camber_projection projection; /* projection of the last tessellation */
     camber_program *program;
     camber_section *sections;
     size_t section_count, section_capacity;
@@ -90,12 +90,12 @@ struct camber_held_network {
 struct camber_mesh {
     camber_device *device;
     camber_mesh *companion; /* camber_mesh_get_companion. NULL: none yet */
-    const void *owner;      /* the renderer that may draw it, only compared and never read here; NULL: none */
+    const void *owner;      /* the renderer that may draw it; the pointer is only compared. NULL: none */
     const camber_shared_buffer_ops *ops;
     void *ops_user;
-    unsigned buffer_copies;                  /* how many times each output buffer is in memory: 2 if GL gets a copy */
-    camber_mesh *next;                       /* in the device's list */
-    uint64_t held_bytes;                     /* without those of its parts and sections */
+    unsigned buffer_copies;                  /* copies of each output buffer in memory: 2 if GL gets a copy */
+    camber_mesh *next;                       /* next mesh in the device's list */
+    uint64_t held_bytes;                     /* without the bytes of its parts and sections */
     size_t remade_parts;                     /* since the last tessellation */
     const struct camber_mesh_output *output; /* NULL: its renderer draws points; output is made only on request */
     bool is_full; /* since the last tessellation a part was evicted, or could not be made for lack of memory */
@@ -106,11 +106,11 @@ struct camber_mesh {
     bool holds_polylines;
     /* Data about the source that was last tessellated. first_slots has polyline_count + 1 entries, which say where each
      * polyline begins; polyline_rows has polyline_count entries. */
-    uint64_t serial;                  /* of polylines or network; 0: none */
+    uint64_t serial;                  /* serial of the polylines or the network; 0: none */
     struct camber_held_network *held; /* NULL unless the source is a network, which has no first_slots */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
-    size_t row_count;        /* the rows of all polylines are below it */
+    size_t row_count;        /* the highest row of the polylines + 1 */
     camber_mesh_part *parts; /* part_capacity of them, of which the first part_count are in use */
     size_t part_count, part_capacity;
 

@@ -1,8 +1,9 @@
 /* Divides a mesh's source into parts.
  *
  * Input: polylines in slots, or sections of a network, and the limits of the device: its largest buffer, and shares of
- * the memory limit. Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided by their slots,
- * which are known, so that a part's input fits. A part whose points or output turn out too large is halved.
+ * the memory limit. Output: mesh->parts, each with buffers of its own. Main idea: slots are known in advance, so
+ * polylines are split by slot such that each part's input fits. A part whose points or output turn out too large is
+ * halved.
  *
  * A part is cut between polylines only. A single polyline that does not fit is an error that names it. */
 #include "residency/parts.h"
@@ -23,8 +24,8 @@ void camber_mesh_release_parts(camber_mesh *mesh) {
     mesh->part_count = mesh->part_capacity = 0;
 }
 
-/* Makes room for that many parts. Parts past part_count are zero, except the very first, which keeps its buffers for
- * the next polylines. */
+/* Makes room for `count` parts. Parts past part_count are zero, except the very first, which keeps its buffers for the
+ * next polylines. */
 static bool reserve_parts(camber_mesh *mesh, size_t count) {
     const size_t before = mesh->part_capacity;
     if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
@@ -43,7 +44,7 @@ static void set_points(const camber_mesh *mesh, camber_mesh_part *part) {
     part->end_point = camber_network_first_point(held->network, part->first_polyline + part->polyline_count);
 }
 
-/* Gives a part the polylines [first, end). Whatever its buffers hold is invalid from then on. */
+/* Gives a part the polylines [first, end). The contents of its buffers are invalid from then on. */
 static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_t first, size_t end) {
     const size_t block = mesh->device->block;
     const size_t slots = mesh->held ? 0 : mesh->first_slots[end] - mesh->first_slots[first];
@@ -58,7 +59,7 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
         set_points(mesh, part);
 }
 
-/* Returns the end (exclusive) of the polylines that fit into a part of that many slots that begins with first. */
+/* Returns the end (exclusive) of the polylines that fit into a part of slots_max slots that begins with `first`. */
 static size_t find_part_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
     const uint32_t *slots = mesh->first_slots;
     size_t low = first, high = mesh->polyline_count;
@@ -140,7 +141,7 @@ void camber_mesh_compact_parts(camber_mesh *mesh) {
             camber_part_release_buffers(mesh, mesh->parts + i);
     for (size_t i = 0; i + 1 < mesh->part_count; i++) {
         const camber_mesh_part *part = mesh->parts + i;
-        /* The size of the merged part is known only after the next frame. It may not merge again before. */
+        /* The size of the merged part is known only after the next frame; before that it is not merged again. */
         if (part[0].section == part[1].section && camber_parts_needed_bytes(mesh, part) <= most)
             merge_with_next(mesh, i);
     }

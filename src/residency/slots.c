@@ -54,7 +54,7 @@ static bool is_first(const camber_slot_finder *finder, size_t polyline) {
     return polyline <= finder->part->first_polyline || finder->part->slot_count == 0;
 }
 
-/* Whether it is the one after the part's last. */
+/* Whether a polyline is the one after the part's last. */
 static bool is_end(const camber_slot_finder *finder, size_t polyline) {
     return polyline >= finder->part->first_polyline + finder->part->polyline_count;
 }

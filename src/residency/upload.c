@@ -2,7 +2,7 @@
 #include "residency/memory.h"
 #include "residency/parts.h"
 
-/* Whether the buffers for the upload are complete, including those of arc lengths if these are needed now. */
+/* Whether the buffers for the upload are complete, including the buffers for arc lengths if these are needed now. */
 static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !mesh->mesh_info.has_arc_length || (mesh->has_offsets ? part->source_line.arc_lengths : part->arc_lengths);
 }
@@ -12,7 +12,7 @@ void camber_mesh_return_points(camber_mesh *mesh) {
         camber_mesh_part *part = mesh->parts + i;
         if (!part->borrowed)
             continue;
-        camber_device_settle(mesh->device); /* then nothing maps them any more */
+        camber_device_settle(mesh->device); /* after this the device no longer uses them */
         part->uploaded = false;
         camber_part_release_points(mesh, part);
     }
@@ -67,7 +67,8 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         if (status == CAMBER_OK && given < words)
             status = camber_buffer_write_later(device, arrays[i].buffer, 4 * given, 4 * (words - given), zeros);
     }
-    /* classify writes a join word for each slot. Neighbours also read those of the sentinels around them. */
+    /* classify writes a join word for each slot. Neighbours also read the join words of the sentinels around the slots.
+     */
     if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_buffer_write_later(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Both are called by the acceptor's thread. */
+/* The acceptor's thread calls both functions. */
 typedef struct camber_acceptor_desc {
     int socket; /* a blocking socket that listens; the acceptor closes it */
     /* while it returns false, connections wait in the system's queue. NULL: always true */

@@ -168,7 +168,7 @@ static bool find_stored(camber_server *server, const camber_route_request *route
     return status == CAMBER_OK && (*body || size_bytes == 0);
 }
 
-/* A missing tile within the zoom range is answered with 204, because browsers log every 404. */
+/* A request for a missing tile within the zoom range gets a 204, because browsers log every 404. */
 static enum MHD_Result send_nothing(request *r) {
     reply a = {.status = 204, .cache_control = "public, max-age=300"};
     return send_answer(r, &a);
@@ -453,7 +453,7 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
     const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
     int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
-    /* An archive and the metrics have no pictures, so a picture's path is not found, rather than too large. */
+    /* An archive and the metrics have no pictures, so a path of a picture gets a 404 instead of a 400. */
     if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
         status = 404;
     return status == 200 ? answer(r) : send_error(r, status);

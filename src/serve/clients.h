@@ -29,7 +29,7 @@ typedef struct camber_client {
 
 typedef struct camber_clients camber_clients;
 
-/* seconds: the time limit for each phase. Returns NULL if there is no memory, or no thread. */
+/* seconds: the time limit for each phase. Returns NULL if there is no memory, or if no thread can be created. */
 camber_clients *camber_clients_create(double seconds);
 void camber_clients_destroy(camber_clients *clients);
 /* Adds a connection that was opened. Returns NULL if there is no memory. */

@@ -80,7 +80,7 @@ camber_tile_key camber_draw_queue_key(const camber_route_request *r) {
                              (uint64_t)r->ratio << 8 | (uint64_t)r->type << 1 | r->dark};
 }
 
-/* Returns the key of a metatile: that of its first tile, for all types. */
+/* Returns the key of a metatile, which is the key of its first tile as PNG, whatever type is requested. */
 static camber_tile_key key_of_picture(const camber_draw_queue *queue, const camber_route_request *request) {
     camber_route_request first = *request;
     const uint32_t side = camber_draw_queue_side(queue->desc.side, request->zoom, request->ratio);

@@ -65,7 +65,7 @@ typedef struct camber_draw_queue camber_draw_queue;
 uint32_t camber_draw_queue_side(uint32_t most, int zoom, uint32_t ratio);
 camber_tile_key camber_draw_queue_key(const camber_route_request *request);
 
-/* Returns NULL if there is no memory, or no thread. */
+/* Returns NULL if there is no memory, or if no thread can be created. */
 camber_draw_queue *camber_draw_queue_create(const camber_draw_queue_desc *desc);
 /* Stops the threads. Requests that still wait end with CAMBER_TILE_REQUEST_DROPPED, and no more are accepted. */
 void camber_draw_queue_stop(camber_draw_queue *queue);

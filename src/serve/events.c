@@ -14,9 +14,9 @@ typedef struct listener {
     camber_events *events;
     struct MHD_Connection *connection;
     struct listener *next, *before;
-    unsigned state, beat; /* the last ones that it was sent */
+    unsigned state, beat; /* the last values that the listener was sent */
     bool sleeps;
-    char text[EVENT_BYTES]; /* the text being sent; sent of its size bytes have been sent */
+    char text[EVENT_BYTES]; /* the text that is being sent: size bytes, of which the first `sent` have been sent */
     size_t sent, size;
 } listener;
 

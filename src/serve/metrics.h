@@ -1,4 +1,4 @@
-/* Counters of what the server does, for Prometheus. Any thread may count. */
+/* Counters of the server's work, for Prometheus. Any thread may count. */
 #ifndef CAMBER_SERVE_METRICS_H
 #define CAMBER_SERVE_METRICS_H
 

@@ -1,8 +1,9 @@
-# Embeds the page of camber serve, and Leaflet, which shows the map. Included by src/CMakeLists.txt: `page_sources`
-# is the C file that the build makes. Run as a script (-P) it writes that file, OUT; FILES are name|path|name|path...
+# Embeds the page of camber serve, and Leaflet, which shows the map. Included by src/CMakeLists.txt: `page_sources` is
+# the C file that the build makes. Run as a script (-P), it writes that file to OUT; FILES is a list of the form
+# name|path|name|path...
 #
-# Leaflet is Debian's libjs-leaflet or npm's leaflet; nothing of it is in this tree. It goes in with its licence (BSD,
-# two clauses) or not at all. Without it the page shows one picture and says what to install.
+# Leaflet is Debian's libjs-leaflet or npm's leaflet; this tree contains no part of it. It is embedded together with its
+# licence (BSD, two clauses) or not at all. Without it the page shows one picture and says what to install.
 if(CMAKE_SCRIPT_MODE_FILE)
   set(type_html "text/html; charset=utf-8")
   set(type_css "text/css; charset=utf-8")
@@ -34,7 +35,7 @@ endif()
 find_path(CAMBER_LEAFLET leaflet.css
           PATHS /usr/share/javascript/leaflet ${CMAKE_BINARY_DIR}/npm/node_modules/leaflet/dist NO_DEFAULT_PATH
           DOC "Folder of Leaflet's leaflet.css and leaflet.js")
-# In Debian leaflet.js is the unminified file; npm has only the minified one, under this name.
+# In Debian, leaflet.js is the unminified file; in npm's package, leaflet.js is the minified one.
 find_file(CAMBER_LEAFLET_SCRIPT NAMES leaflet.min.js leaflet.js PATHS ${CAMBER_LEAFLET} NO_DEFAULT_PATH)
 find_file(CAMBER_LEAFLET_LICENSE NAMES LICENSE copyright
           PATHS ${CAMBER_LEAFLET}/.. /usr/share/doc/libjs-leaflet NO_DEFAULT_PATH)

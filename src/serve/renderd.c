@@ -202,7 +202,7 @@ static bool receive_message(int from, protocol_message *message) {
     const size_t size = sizes[message->version];
     if (!receive(from, (char *)message + sizes[1], size - sizes[1]))
         return false;
-    if (message->version == 2) /* in version 2 padding follows; a later version has a media type there */
+    if (message->version == 2) /* in version 2, padding follows; version 3 has the media type in this place */
         message->media_type[0] = 0;
     return true;
 }
@@ -264,7 +264,7 @@ static void close_client(camber_renderd *renderd, renderd_client *client) {
     pthread_mutex_unlock(&renderd->mutex);
 }
 
-/* Finds a free slot, or that of the client that has been silent for longest. Returns NULL if all clients are being
+/* Finds a free slot, or the slot of the client that has been silent for longest. Returns NULL if all clients are being
  * served. */
 static renderd_client *find_room(camber_renderd *renderd) {
     renderd_client *place = NULL, *silent = NULL;
@@ -284,7 +284,7 @@ static renderd_client *find_room(camber_renderd *renderd) {
     return silent;
 }
 
-/* If there are too many clients, the new one is closed at once. */
+/* If there are too many clients, the new connection is closed at once. */
 static void take_client(void *user, int socket) {
     camber_renderd *renderd = user;
     renderd_client *place = find_room(renderd);

@@ -35,7 +35,7 @@ typedef enum camber_route {
 
 enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
 
-/* Types of tiles, by the extension in the path. The first two can be drawn; an archive may have any. */
+/* Types of tiles, by the extension in the path. The first two can be drawn; an archive may contain any of them. */
 typedef enum camber_route_type {
     CAMBER_ROUTE_PNG = 0,
     CAMBER_ROUTE_WEBP,

@@ -150,7 +150,7 @@ static int start_daemon(camber_listener *listener, unsigned threads, unsigned co
                          MHD_OPTION_NOTIFY_COMPLETED, camber_request_end, listener, MHD_OPTION_NOTIFY_CONNECTION,
                          notice_connection, listener, MHD_OPTION_SIGPIPE_HANDLED_BY_APP, 1,
                          threads > 1 ? MHD_OPTION_ARRAY : MHD_OPTION_END, threads > 1 ? pool : NULL, MHD_OPTION_END);
-    return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* otherwise no memory, or no threads */
+    return listener->daemon ? 0 : errno == EMFILE ? EMFILE : EAGAIN; /* otherwise memory or threads are exhausted */
 }
 
 static int start(camber_listener *listener, const char *address, unsigned threads, unsigned connections) {
@@ -287,7 +287,7 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     pthread_mutex_init(&made->reader_mutex, NULL);
     int cause = ENOMEM;
     made->folder = (camber_tile_folder){.path = made->desc.cache_dir, .failed = tell_failure, .user = made};
-    const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* with renderd, the folder is mod_tile's */
+    const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* with renderd, it belongs to mod_tile */
     if ((made->cache = camber_tile_cache_create(made->desc.cache_bytes, has_folder ? &made->folder : NULL)) &&
         (made->painter = camber_painter_create(made->cache, made->desc.side)) &&
         (made->clients = camber_clients_create(MOST_SECONDS)) &&

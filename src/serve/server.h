@@ -1,6 +1,6 @@
 /* The HTTP server, based on libmicrohttpd: tiles, pictures, the page, health and metrics.
  *
- *     camber_server_create     listens at once; tiles are answered with 503 until there is content
+ *     camber_server_create     listens at once; requests for tiles get a 503 until there is content
  *     camber_server_show       sets a map or an archive, or replaces it, without dropping requests
  *     camber_server_destroy    accepts no more connections, finishes the requests in progress, and stops
  *
@@ -58,7 +58,8 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
 void camber_server_destroy(camber_server *server);
 /* Returns the URL of the page. */
 const char *camber_server_get_url(const camber_server *server);
-/* Return the addresses at which the server listens, with their ports. That of /metrics is NULL if there is none. */
+/* Return the addresses at which the server listens, with their ports. The address of /metrics is NULL if metrics are
+ * not served. */
 const char *camber_server_get_address(const camber_server *server);
 const char *camber_server_get_metrics_address(const camber_server *server);
 /* Returns false if there is no memory; then the previous content stays, and the caller closes the new one. */

@@ -13,7 +13,7 @@
 
 typedef struct camber_tile_folder {
     const char *path; /* of an existing folder */
-    /* Called when a tile cannot be written; then not again until one has been written successfully. */
+    /* Called when a tile cannot be written. It is not called again until a tile has been written successfully. */
     void (*failed)(void *user, const char *message);
     void *user;
     atomic_bool fails;

@@ -1,7 +1,7 @@
 /* Computes arc lengths: how far along its polyline each point is, for dashes and other things drawn along lines.
  *
  * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
- * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.
+ * arc_length_scan writes every point's length. The CPU twin follows each polyline from its first point to its last.
  * Both add up integers (kernels/arc_length.h), so that the order does not matter and the two agree bit for bit. */
 #include "stroke/arc_length.h"
 
@@ -63,7 +63,8 @@ camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *p
 
 /* ---- Twin ---- */
 
-/* Measures the slots [first, end), from the first point of a stretch to its last. The first pass finds the total. */
+/* Measures the slots [first, end), from the first point of a stretch to its last. The first of two passes finds the
+ * total. */
 static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_arc_length *arc_lengths) {
     camber_u64 sum = 0;
     for (size_t pass = 0; pass < 2; pass++) {

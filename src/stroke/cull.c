@@ -3,7 +3,7 @@
  * Input: the points of a section and the camera's projection. Output: the part's x, y and info, as if the visible
  * lines had been uploaded as polylines. Main idea: two passes over the same walk (kernels/cull.h), in which each
  * work-item takes a chunk of points. The first pass counts the slots of each chunk; the host adds the counts up; the
- * second pass writes each chunk's slots at the position that the sum gives.
+ * second pass writes each chunk's slots from the position that the sum gives.
  *
  *     chunks        |   0   |   1   |   2   |   3   |
  *     cull_count        5       0       9       4          slots
@@ -21,7 +21,7 @@ static camber_launch over_chunks(const camber_device *device, const camber_proje
                            .group_size = device->block * CAMBER_WALKERS / CAMBER_BLOCK};
 }
 
-/* Makes room for the counts of that many chunks, on host and device. */
+/* Makes room for the counts of `chunks` chunks, on host and device. */
 static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
     struct camber_held_network *held = mesh->held;
     const uint64_t on_host = chunks < part->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 64;
@@ -48,7 +48,7 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
     return status;
 }
 
-/* Counts the part's slots, and sets how many come before each chunk. */
+/* Counts the part's slots, and computes how many are before each chunk. */
 static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p,
                                        uint64_t *slots) {
     const camber_device *device = mesh->device;
@@ -83,7 +83,7 @@ static camber_status count_chunk_slots(camber_mesh *mesh, camber_mesh_part *part
     return CAMBER_OK;
 }
 
-/* Steps, each of which may fail:
+/* Makes the slots of a part in these steps, each of which may fail:
  *
  *     1  upload the part's section, unless it is on the device
  *     2  count the slots of each chunk (cull_count); stop if the camera sees none
@@ -122,8 +122,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;
-    /* The kernel zeroes the join words of two sentinels. Source lines have no join words, so it is given a buffer there
-     * that the next stage overwrites. */
+    /* The kernel zeroes the join words of two sentinels. Source lines have no join words, so the kernel gets a buffer
+     * for them that the next stage overwrites. */
     const camber_source_line_buffers *source_line = &part->source_line;
     const bool beside = mesh->has_offsets, along = mesh->mesh_info.has_arc_length;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(section->x),

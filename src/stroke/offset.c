@@ -7,8 +7,7 @@
  *
  *     offset_clip   per slot: how much is left of the offset segment that begins there, and of the arc at its corner
  *     offset_count  per chunk of slots: how many slots it yields; the host adds these counts up
- *     offset_emit   per chunk: writes its slots where the sum says, and for each source slot where its own begin
- * (places)
+ *     offset_emit   per chunk: writes its slots where the sum says, and `places`: where each source slot's slots begin
  *
  * The twin walks the source lines slot by slot and appends. */
 #include "stroke/offset.h"
@@ -33,7 +32,8 @@ bool camber_desc_has_offsets(const camber_tessellation_desc *desc) {
     return has;
 }
 
-/* Makes the rows' values for the offset kernels: one more than there are strokes, since a buffer may not be empty. */
+/* Makes the values of rows that the offset kernels read: one more than there are strokes, since a buffer may not be
+ * empty. */
 static camber_status make_offset_rows(camber_context *context, const camber_tessellation_desc *desc,
                                       camber_offset_row **offset_rows) {
     camber_offset_row *made = camber_alloc_zero(context, desc->stroke_count + 1, sizeof *made);
@@ -214,7 +214,7 @@ static uint64_t count_slots(const camber_source_line *source_line, const camber_
     return count;
 }
 
-/* Makes arrays for count slots, padded to whole blocks, and fills them. */
+/* Makes arrays for `count` slots, padded to whole blocks, and fills them. */
 static camber_status emit_slots(const camber_source_line *source_line, const camber_polylines *from, size_t count,
                                 camber_polylines *made) {
     camber_context *context = from->context;

@@ -1,4 +1,4 @@
-/* Makes the points of parts, and makes them again. */
+/* Makes the points of parts, and makes them again after they were evicted. */
 #ifndef CAMBER_STROKE_STROKE_H
 #define CAMBER_STROKE_STROKE_H
 
@@ -17,18 +17,19 @@ camber_status camber_part_run(camber_mesh *mesh, const camber_mesh_part *part, c
 /* Returns the program with a method's classify, scan and emit. */
 camber_status camber_mesh_program(camber_mesh *mesh, camber_method method, camber_program **program);
 
-/* tessellate.c: makes a part again, unless its buffers hold what the mesh is drawn from. part points into mesh->parts.
- * Other parts may be evicted. */
+/* tessellate.c: makes a part again, unless its buffers hold the points or the output that the mesh is drawn from. part
+ * points into mesh->parts. Other parts may be evicted. */
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
-/* Also makes sure that its join words are those of a method. */
+/* Also makes sure that the part's join words are for the given method. */
 camber_status camber_part_ensure_classified(camber_mesh *mesh, camber_mesh_part *part, camber_method method);
-/* Also makes sure that they are those of strips, which the rasterizer reads whatever the method. */
+/* Also makes sure that the part's join words are for strips, which the rasterizer reads whatever the method. */
 camber_status camber_part_ensure_points(camber_mesh *mesh, camber_mesh_part *part);
-/* Fails because a part that was made again does not have the size that it had. */
+/* Fails because a part that was made again has another size than before. */
 camber_status camber_part_fail_remade(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots,
                                       size_t records);
 
-/* read_points.c: a part's points in host memory: words of its slots, and of a sentinel before and after them. */
+/* read_points.c: a part's points in host memory: the words of its slots, and of a sentinel before and after the slots.
+ */
 typedef struct camber_part_points {
     float *x, *y;
     uint32_t *info, *joins;

@@ -88,7 +88,7 @@ static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool
     return status;
 }
 
-/* Keeps what was made of a part, unless memory is full, and emits it if the mesh is drawn from its output. */
+/* Keeps a part's points, unless memory is full, and emits the part if the mesh is drawn from its output. */
 static camber_status keep_part(camber_mesh *mesh, camber_mesh_part *part) {
     const uint64_t missing = mesh->output ? camber_part_missing_output_bytes(mesh, part) : 0;
     if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, missing, true))
@@ -149,7 +149,7 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
         status = mesh->output->remake(mesh, part);
     part->made = status == CAMBER_OK;
     if (status != CAMBER_OK)
-        camber_device_settle(mesh->device); /* what is written later is read from the host's arrays */
+        camber_device_settle(mesh->device); /* a queued write may still read the host's arrays */
     part->slot_count = slots;
     part->used_slots = used;
     mesh->mesh_info = told;
@@ -176,7 +176,8 @@ typedef struct source {
     uint32_t row_count;
 } source;
 
-/* Adds up what the mesh is drawn from: its points, or its output. It is empty if it has no points. */
+/* Adds up the bytes that the mesh is drawn from: of its points, or of its output. The mesh is empty if it has no
+ * points. */
 static void set_bytes(camber_mesh *mesh) {
     camber_mesh_info *info = &mesh->mesh_info;
     size_t slots = 0;
@@ -239,7 +240,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     }
     if (status != CAMBER_OK) {
         mesh->mesh_info = nothing;
-        camber_device_settle(mesh->device); /* what is written later is read from the source's arrays */
+        camber_device_settle(mesh->device); /* a queued write may still read the source's arrays */
     }
     camber_mesh_let_go(mesh);
     mesh->done = status == CAMBER_OK;

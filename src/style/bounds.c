@@ -1,8 +1,8 @@
 /* Bounds the values of a layer's numeric properties before any feature is known.
  *
  * Input: a layer's property and a zoom. Output: its value, if features do not change it. Otherwise the document is
- * walked: an expression that chooses among outputs is bounded by the largest of them, and sums and products by those of
- * the bounds of their operands. A value read from a feature has no bound. */
+ * walked: an expression that chooses among outputs is bounded by the largest bound of an output, and a sum or product
+ * by the sum or product of its operands' bounds. A value read from a feature has no bound. */
 #include "style/bounds.h"
 
 #include "style/properties.h"

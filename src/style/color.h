@@ -1,4 +1,4 @@
-/* Parsing colours of CSS. */
+/* Parsing CSS colours. */
 #ifndef CAMBER_STYLE_COLOR_H
 #define CAMBER_STYLE_COLOR_H
 

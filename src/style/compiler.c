@@ -1,8 +1,8 @@
 /* The compiler of expressions: tracks the position in the document, reports errors, makes typed nodes, and folds
  * constants.
  *
- * Input: JSON. Output: camber_expression. Operands are compiled first and wait on a stack; an operator takes its own
- * from there. An operator whose operands are all constants is evaluated immediately and becomes a constant. */
+ * Input: JSON. Output: camber_expression. Operands are compiled first and wait on a stack; an operator takes its
+ * operands from there. An operator whose operands are all constants is evaluated immediately and becomes a constant. */
 #include "style/compiler.h"
 
 #include <math.h>
@@ -303,8 +303,9 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 
 /* ---- Folding ---- */
 
-/* Whether a node may be replaced by its value now. The type of the state counts as unknown. An error must fail only if
- * it is reached. A collator's value is not a value of the language. A variable's value belongs to one evaluation. */
+/* Whether a node may be replaced by its value now. It may not be if it reads the state, whose type counts as unknown;
+ * if it is an error, which must fail only if it is reached; if it is a collator, whose value is not a value of the
+ * language; or if it is a variable, whose value belongs to one evaluation. */
 static bool is_foldable(const camber_expression *e, const camber_node *node) {
     static camber_evaluate_fn *const kept[] = {camber_evaluate_constant, camber_evaluate_state, camber_evaluate_var,
                                                camber_evaluate_error, camber_evaluate_collator};
@@ -364,7 +365,7 @@ camber_evaluate_fn *camber_conversion_to(camber_type type) {
     }
 }
 
-/* Whether values of a known type become another type where that is expected. */
+/* Whether values of a known type are converted to another type if that is expected. */
 static bool is_converted(camber_type expected, camber_type actual) {
     switch (expected) {
     case CAMBER_TYPE_PADDING: return actual == CAMBER_TYPE_NUMBER || actual == CAMBER_TYPE_ARRAY;

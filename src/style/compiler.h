@@ -82,7 +82,7 @@ struct camber_compiler {
     void *report_user;
 };
 
-/* How an operand of unknown type gets the expected type. */
+/* How an operand of unknown type is made to have the expected type. */
 typedef enum camber_annotation {
     CAMBER_ANNOTATE_ASSERT = 0,
     CAMBER_ANNOTATE_COERCE,
@@ -135,18 +135,18 @@ bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_
 /* Wraps node so that it has the expected type, or fails. Constants stay constants. */
 bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node);
 
-/* The function that makes a value of the type of any other one, or fails. */
+/* Returns the function that converts any value to this type, or fails to. */
 camber_evaluate_fn *camber_conversion_to(camber_type type);
 
 bool camber_push_operand(camber_compiler *c, uint32_t node);
-/* Makes a node of the operands from first_operand on, and pops them. */
+/* Makes a node whose operands are those from first_operand on, and pops them. */
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
 /* Makes a node that has node as its only operand. */
 bool camber_wrap_node(camber_compiler *c, camber_evaluate_fn *evaluate, camber_typing type, uint32_t *node);
 bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node);
 bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node);
-/* Makes a node that reads a property of the feature, and adds the property to the style's. evaluate: that of get or
- * has. */
+/* Makes a node that reads a property of the feature, and adds the property to the style's. evaluate: the function of
+ * get or of has. */
 bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, const char *name, uint32_t *node);
 /* Makes a node without operands that reads the feature, the zoom or line-progress. */
 bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber_type type, uint32_t *node);

@@ -120,7 +120,7 @@ static bool read_version(camber_document *d) {
            camber_document_continues(d, depth);
 }
 
-/* The same limit as that of the map's view. */
+/* The same limit as the map's view has. */
 static const double PITCH_MAX_DEG = 85.0;
 
 static bool read_camera(camber_document *d) {
@@ -193,8 +193,8 @@ static void warn_of_places(camber_document *d) {
 }
 
 static bool read_document(camber_document *d) {
-    /* These include properties that do not affect lines: those for other layer types and for animated pictures, and
-     * those that style editors store. */
+    /* These include properties that do not affect lines: properties for other layer types and for animated pictures,
+     * and properties that style editors store. */
     static const char *const known[] = {
         "version", "name",      "metadata", "center",     "centerAltitude", "zoom",   "bearing",    "pitch",
         "roll",    "state",     "light",    "sources",    "sprite",         "glyphs", "font-faces", "transition",

@@ -152,12 +152,12 @@ static json_t *component(double number) {
     return json_real(strtod(text, NULL));
 }
 
-/* Whether an image exists. user: the array of their names. */
+/* Whether an image exists. user: the array of the names of images. */
 static uint32_t find_image(void *user, const char *name) {
     return has_text(user, name);
 }
 
-/* images: those that exist. NULL: not told, and none is said to be there. */
+/* images: which images exist. NULL: it is not known, and every image is reported as missing. */
 static json_t *to_json(const camber_style_images *images, const camber_value *value);
 
 /* Writes a colour as the specification's tests do: multiplied by alpha, and as an object if a colour was not expected.
@@ -192,7 +192,7 @@ static json_t *image_to_json(const camber_style_images *images, const char *name
     return json_pack("{s:o, s:b}", "name", string_to_json(name), "available", available);
 }
 
-/* The names of fonts, with commas between. */
+/* Writes the names of fonts, separated by commas. */
 static json_t *fonts_to_json(const camber_value *fonts) {
     char text[1024] = "";
     size_t used = 0;
@@ -245,7 +245,7 @@ static json_t *to_json(const camber_style_images *images, const camber_value *va
     return json_null();
 }
 
-/* Fills in what the expression reads of the feature. values has room for all properties of the style. */
+/* Fills in the values that the expression reads from the feature. values has room for all properties of the style. */
 static bool read_feature(evaluator *e, const json_t *json, camber_value *values, camber_value *all,
                          camber_feature_view *feature) {
     static const camber_value empty = {.type = CAMBER_VALUE_OBJECT};

@@ -40,7 +40,7 @@ bool camber_values_equal(const camber_value *a, const camber_value *b);
 
 camber_evaluate_fn camber_evaluate_constant, camber_evaluate_state, camber_evaluate_let, camber_evaluate_var,
     camber_evaluate_error;
-/* The index of the node is that of the property among the style's. */
+/* The node's index is the property's index among the style's properties. */
 camber_evaluate_fn camber_evaluate_get, camber_evaluate_has;
 camber_evaluate_fn camber_evaluate_id, camber_evaluate_has_id, camber_evaluate_geometry_type, camber_evaluate_zoom,
     camber_evaluate_line_progress;

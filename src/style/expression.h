@@ -31,7 +31,7 @@ typedef enum camber_color_space {
 
 struct camber_node {
     camber_evaluate_fn *evaluate;
-    const camber_operator *op;                           /* its row, if all operands have one type */
+    const camber_operator *op;                           /* its row, if all operands have the same type */
     bool reads_zoom, reads_feature, reads_line_progress; /* the node itself or an operand */
     bool bezier;     /* an interpolation along a Bezier curve, whose 4 numbers are after the stops */
     uint8_t space;   /* camber_color_space */
@@ -40,7 +40,7 @@ struct camber_node {
     uint32_t first, count; /* operands, in links */
     /* Property: index among the style's. Variable: index of the slot that keeps its value, and the bound node.
      * Comparison: the outcomes for which it is true. Match: its labels, sorted. Curve: its stops; an interpolation has
-     * one for each output, a step one fewer. */
+     * one stop for each output, a step has one stop fewer. */
     uint32_t index, index_count;
     camber_value value; /* a constant's value, the style's state, or an interpolation's base */
 };

@@ -198,7 +198,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 /* ---- Types of geometry ---- */
 
-/* The result of a filter for features of one geometry type, as far as it is known without their properties. */
+/* The result of a filter for features of one geometry type, if it is known without their properties. */
 typedef enum verdict { NEVER = -1, MAYBE = 0, ALWAYS = 1 } verdict;
 
 static verdict reverse(verdict one) {
@@ -251,7 +251,7 @@ static verdict judge_match(const json_t *json, const char *type) {
 
 static verdict judge(const json_t *json, const char *type);
 
-/* all is NEVER if a member is; any is ALWAYS if a member is. */
+/* "all" is NEVER if one of its members is; "any" is ALWAYS if one of its members is. */
 static verdict judge_members(const json_t *json, const char *type, verdict decides) {
     verdict made = reverse(decides);
     for (size_t i = 1; i < json_array_size(json); i++) {

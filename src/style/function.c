@@ -161,7 +161,7 @@ static bool push_value(function *f, const json_t *json) {
     return compile_value(f, json, &node) && camber_push_operand(f->c, node);
 }
 
-/* Pushes the function's default, or that of the specification. */
+/* Pushes the function's default, or the specification's. */
 static bool push_otherwise(function *f) {
     camber_compiler *c = f->c;
     if (f->otherwise)

@@ -1,4 +1,4 @@
-/* Reading JSON, and converting it to values of expressions. */
+/* Reads JSON and converts it to expression values. */
 #ifndef CAMBER_STYLE_JSON_H
 #define CAMBER_STYLE_JSON_H
 

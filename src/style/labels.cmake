@@ -1,13 +1,14 @@
-# The words of the styles city and roads: what is named, from which zoom on, how large, and in which colour.
+# The labels of the styles city and roads: what is labelled, from which zoom on, how large, and in which colour.
 #
-# A kind of label is a row of tables here: its filter for OpenStreetMap's keys, and for the layers of each schema of tiles.
-# Kinds that come later in the list are placed first, and hide what comes before.
+# Each kind of label has entries in the tables here, among them a filter for OpenStreetMap's keys and its classes in
+# the layers of each schema of tiles. Kinds that are later in the list are placed first, and hide labels of earlier
+# kinds.
 
 set(label_kinds house stream street_small street street_main green airport station peak lake shield hamlet suburb village
     town city)
 
-# From which zoom on; text sizes at that zoom and four zooms later, CSS px; the font; the palette's colour; what more the
-# layout says.
+# For each kind: its first zoom; text sizes in CSS px at that zoom and four zooms later; its font; its colour in the
+# palette; and additional members of its layout.
 set(label_zoom_house 17.5)
 set(label_zoom_stream 13)
 set(label_zoom_street_small 15)
@@ -24,7 +25,7 @@ set(label_zoom_suburb 12)
 set(label_zoom_village 10)
 set(label_zoom_town 8)
 set(label_zoom_city 4)
-# From which zoom on a place is larger than the picture.
+# The zooms from which on a place is usually larger than the picture, so that it is no longer labelled.
 set(label_end_suburb 16.5)
 set(label_end_town 15)
 set(label_end_city 13.5)
@@ -104,13 +105,13 @@ set(label_dark_green "#7fa585")
 set(label_dark_shield "#f0c58c")
 set(label_dark_halo "rgba(14, 18, 26, 0.9)")
 
-# The texts of kinds that show more or something other than the name.
+# The texts of kinds whose labels have more than the name, or something else.
 set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"FULLNAME\"]]")
 set(label_text_house "[\"coalesce\", [\"get\", \"addr:housenumber\"], [\"get\", \"housenumber\"], [\"get\", \"addr_housenumber\"]]")
 set(label_text_peak "[\"case\", [\"has\", \"ele\"], [\"concat\", ${label_name}, \"\\n\", [\"to-string\", [\"get\", \"ele\"]], \" m\"], ${label_name}]")
 set(label_text_shield "[\"coalesce\", [\"get\", \"ref\"], [\"get\", \"shield_text\"], \"\"]")
 
-# Filters of OpenStreetMap's keys.
+# Filters that use OpenStreetMap's keys.
 set(label_road "[\"coalesce\", [\"get\", \"highway\"], [\"get\", \"type\"], [\"get\", \"MTFCC\"]]")
 city_match(label_osm_street_small "${label_road}" ${road_values_path} ${road_values_track} ${road_values_service})
 city_match(label_osm_street "${label_road}" ${road_values_minor})
@@ -132,7 +133,7 @@ city_match(label_osm_village "[\"get\", \"place\"]" village)
 city_match(label_osm_town "[\"get\", \"place\"]" town)
 city_match(label_osm_city "[\"get\", \"place\"]" city)
 
-# Layers of tiles, whatever the schema, and the classes that a kind has in them; "*": all of the layer.
+# Layers of tiles of all schemas, and the classes that belong to a kind in each layer; "*": the whole layer.
 set(label_tile_layers place places place_labels transportation_name roads street_labels waterway water water_name
     water_lines_labels water_polygons_labels physical_line physical_point park landuse mountain_peak pois poi
     public_transport aerodrome_label housenumber addresses buildings)
@@ -180,7 +181,7 @@ set(label_tiles_suburb_places suburb quarter borough neighbourhood macrohood)
 set(label_tiles_village_places village)
 set(label_tiles_town_places town)
 set(label_tiles_city_places city)
-# Protomaps has the kind of a place in a property of its own.
+# Protomaps has the kind of a place in a separate property.
 set(label_class_places [=[["coalesce", ["get", "kind_detail"], ["get", "pmap:kind_detail"], ["get", "kind"], ["get", "pmap:kind"]]]=])
 
 set(label_template [=[
@@ -190,7 +191,7 @@ set(label_template [=[
                 "text-size": ["interpolate", ["linear"], ["zoom"], @ZOOM@, @SMALL@, @LATER@, @LARGE@]},
      "paint": {"text-color": "@COLOR@", "text-halo-color": "@HALO@", "text-halo-width": 1.2}}]=])
 
-# Appends a layer of a kind: id, more of its head.
+# Appends a layer for a kind, with an id and additional members (head).
 macro(label_layer out theme kind id head)
   set(ID ${id})
   set(HEAD "${head}")
@@ -216,7 +217,7 @@ macro(label_layer out theme kind id head)
   city_append(${out} "${label_template}")
 endmacro()
 
-# Four zooms later; CMake counts in whole numbers.
+# Adds four to a zoom. CMake's arithmetic has only whole numbers.
 macro(math_zoom out zoom)
   string(REGEX MATCH "^[0-9]+" whole ${zoom})
   string(REGEX REPLACE "^[0-9]+" "" rest ${zoom})
@@ -224,8 +225,8 @@ macro(math_zoom out zoom)
   set(${out} "${whole}${rest}")
 endmacro()
 
-# Appends the layers of some kinds: one for OpenStreetMap's keys, and one for each layer of tiles that has the kind.
-# tiles: OFF leaves these out.
+# Appends the layers for some kinds: one for OpenStreetMap's keys, and one for each layer of tiles that has the kind.
+# tiles: OFF leaves out the layers for tiles.
 function(label_layers out theme tiles)
   foreach(kind IN LISTS ARGN)
     set(filter "${label_osm_${kind}}")

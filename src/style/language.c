@@ -1,8 +1,8 @@
 /* Names in another language.
  *
  * Input: a style document and the code of a language. Output: the same document, whose symbol layers read a feature's
- * name in that language first: name:de as OpenStreetMap has it, name_de as some tiles do, and then what they read
- * before. */
+ * name in that language first: name:de, which OpenStreetMap uses; then name_de, which some tiles use; and then the
+ * property that they read before. */
 #include "style/json.h"
 
 #include "camber_map.h"
@@ -12,12 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* name, name:latin, name_en, ... */
+/* Whether a property is a name: name, name:latin, name_en, ... */
 static bool is_name(const char *key) {
     return strncmp(key, "name", 4) == 0 && (key[4] == 0 || key[4] == ':' || key[4] == '_');
 }
 
-/* ["coalesce", ["get", "name:de"], ["get", "name_de"], former]; it takes the reference to former. */
+/* Makes ["coalesce", ["get", "name:de"], ["get", "name_de"], former]. It takes over the reference to former. */
 static json_t *prefer(const char *language, json_t *former) {
     char colon[64], underscore[64];
     snprintf(colon, sizeof colon, "name:%s", language);
@@ -25,7 +25,7 @@ static json_t *prefer(const char *language, json_t *former) {
     return json_pack("[s, [s, s], [s, s], o]", "coalesce", "get", colon, "get", underscore, former);
 }
 
-/* A text of tokens, "{name:latin}", becomes an expression if there is nothing else in it. */
+/* Turns a text of name tokens, such as "{name:latin}", into an expression. Other texts stay as they are. */
 static json_t *translate_text(const char *language, const char *text) {
     char key[64];
     const size_t length = strlen(text);
@@ -33,14 +33,14 @@ static json_t *translate_text(const char *language, const char *text) {
     if (!end || (size_t)(end - text) >= sizeof key)
         return json_string(text);
     snprintf(key, sizeof key, "%.*s", (int)(end - text - 1), text + 1);
-    /* "{name:latin}\n{name:nonlatin}" and its like are one name in two scripts. */
+    /* Two tokens, as in "{name:latin}\n{name:nonlatin}", are one name in two scripts. */
     const bool two = end[1] && strstr(end + 1, "{name") && text[length - 1] == '}';
     if (!is_name(key) || (end[1] && !two))
         return json_string(text);
     return prefer(language, json_pack("[s, [s, s], [s, s]]", "coalesce", "get", key, "get", "name"));
 }
 
-/* Returns a new reference; NULL: no memory. The depth is limited by the document's reader. */
+/* Returns a new reference; NULL: no memory. The reader of the document has limited its depth. */
 static json_t *translate(const char *language, json_t *json) {
     size_t i;
     json_t *item;

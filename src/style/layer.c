@@ -215,7 +215,8 @@ static camber_color opaque_border(camber_color color) {
     return border;
 }
 
-/* Makes the ramps of the line and its border. A border without a colour derives it from the line's. */
+/* Makes the ramps of the line and its border. A border without a colour gets a colour that is derived from the line's.
+ */
 static camber_status make_ramps(camber_compiler *c, camber_style_layer *layer) {
     const char *cause;
     double at = 0.0;
@@ -307,7 +308,7 @@ static bool is_known_type(const char *type) {
     return false;
 }
 
-/* A layer with a "ref" takes everything but its paint properties from the referenced layer. *resolved is a new
+/* A layer with a "ref" takes everything except its paint properties from the referenced layer. *resolved is a new
  * reference. */
 static bool resolve_reference(camber_document *d, json_t *json, json_t **resolved) {
     static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};

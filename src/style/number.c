@@ -33,7 +33,7 @@ const char *camber_number_parse(const char *text, double *number) {
             end = skip_digits(exponent);
     }
     /* Parses without the locale's decimal point, which strtod would expect: the text is copied with that point in place
-     * of ours. A number of more than 400 characters is rejected rather than misread; no style means one. */
+     * of ours. A number of more than 400 characters is rejected rather than misread; no style needs such a number. */
     char copy[416];
     const size_t length = (size_t)(end - text), before = (size_t)(point - text);
     const char *separator = localeconv()->decimal_point;

@@ -6,8 +6,8 @@
  *     operators_sequences.c  strings and arrays
  *     operators_curves.c     step, interpolate
  *     operators_maths.c      arithmetic and functions of a number
- *     operators_formats.c    formatted texts, images in them, and what symbol layers have of types
- *     operators_numbers.c    numbers as texts for people
+ *     operators_formats.c    formatted texts, images in them, and the types that only symbol layers have
+ *     operators_numbers.c    numbers as texts for readers
  *
  * To add an operator, add its row there, and the functions that the row names. Only files of src/style that compile
  * expressions include this. */
@@ -55,8 +55,8 @@ extern const camber_operator_table camber_input_operators, camber_type_operators
 /* Compiles operands of one type into a node with the row's result type. */
 camber_compile_fn camber_compile_uniform;
 
-/* The outcomes of a comparison. The variant of a comparison, and the index of its node, is the set of those for which
- * it is true. */
+/* The outcomes of a comparison. The variant of a comparison, and the index of its node, is the set of the outcomes for
+ * which it is true. */
 enum { CAMBER_OUTCOME_LESS = 1, CAMBER_OUTCOME_EQUAL = 2, CAMBER_OUTCOME_GREATER = 4 };
 
 /* The type of a decision's or a curve's outputs: the expected type, if there is one, otherwise the first output's. */

@@ -197,7 +197,8 @@ static double bezier_at(const double controls[4], double x) {
 static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
                        camber_value *value);
 
-/* Numbers are mixed, an anchor's name stays, and its offset is an array. */
+/* Mixes two items of arrays: numbers are mixed, arrays, such as an anchor's offset, are mixed item by item, and
+ * anything else, such as an anchor's name, must be equal. */
 static bool mix_items(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
                       camber_value *value) {
     *value = *low;

@@ -209,7 +209,7 @@ static bool compile_none(camber_compiler *c, const camber_operator *row, json_t 
            camber_wrap_node(c, camber_evaluate_not, camber_typing_of(CAMBER_TYPE_BOOL), node);
 }
 
-/* False if the operand fails, as for comparisons in older filters. */
+/* The result is false if the operand fails, as for comparisons in older filters. */
 bool camber_evaluate_quiet(camber_evaluation *e, const camber_node *node, camber_value *value) {
     if (!camber_evaluate_operand(e, node, 0, value))
         *value = camber_value_bool(false);
@@ -257,7 +257,7 @@ static bool is_there(const camber_evaluation *e, const camber_value *value) {
     return e->images->find(e->images->user, value->string) != 0;
 }
 
-/* If all images are missing, the result is the first of them. */
+/* If all images are missing, the result is the first image. */
 bool camber_evaluate_coalesce(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value first = nothing;
     *value = nothing;

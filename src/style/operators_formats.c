@@ -1,8 +1,7 @@
 /* Formatted texts, images, and the conversions to types that only symbol layers have.
  *
- * A formatted text is made of sections, each with its own font, size and colour, or of an image in place of text. Each
- * operator's row stands in the table at the end.
- */
+ * A formatted text consists of sections. A section is text with its own font, size and colour, or an image. The table
+ * at the end has each operator's row. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 #include "style/section.h"
@@ -56,7 +55,7 @@ static camber_text_section *add_sections(camber_evaluation *e, uint32_t count, c
     return sections;
 }
 
-/* The first operand that is not null counts. */
+/* Uses the first operand that is not null. */
 bool camber_evaluate_to_formatted(camber_evaluation *e, const camber_node *node, camber_value *value) {
     for (uint32_t i = 0; i < node->count; i++) {
         if (!camber_evaluate_operand(e, node, i, value))
@@ -75,7 +74,7 @@ bool camber_evaluate_to_formatted(camber_evaluation *e, const camber_node *node,
     return section != NULL;
 }
 
-/* The operands of a section. */
+/* The operands that each section has. */
 enum { SECTION_CONTENT, SECTION_SCALE, SECTION_FONTS, SECTION_COLOR, SECTION_ALIGN, SECTION_OPERANDS };
 
 static bool evaluate_section(camber_evaluation *e, const camber_node *node, uint32_t first,
@@ -129,7 +128,7 @@ static bool check_align(camber_compiler *c, const json_t *json) {
            camber_compiler_fail(c, "\"%.64s\" is not a vertical-align; use \"bottom\", \"center\" or \"top\"", name);
 }
 
-/* Pushes the options of a section, an object, or nothing for each. */
+/* Pushes the options of a section, which are an object. Null is pushed for each option that is missing. */
 static bool compile_options(camber_compiler *c, const json_t *options) {
     const struct {
         const char *name;
@@ -155,7 +154,7 @@ static bool compile_options(camber_compiler *c, const json_t *options) {
     return true;
 }
 
-/* ["format", content, options, content, ...], where options, an object, may be missing. */
+/* Compiles ["format", content, options, content, ...]. options is an object, and may be missing. */
 static bool compile_format(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                            uint32_t *node) {
     (void)expected;
@@ -188,8 +187,8 @@ static bool are_numbers(const camber_value *array) {
     return true;
 }
 
-/* As in CSS: of one number all sides have it; of two the first is that of top and bottom; of three the second is that
- * of both sides. */
+/* As in CSS, a single number applies to all sides; the first of two numbers applies to top and bottom, and the second
+ * of two or three to left and right. */
 static bool to_padding(camber_evaluation *e, camber_value *value) {
     static const uint32_t sides[4][4] = {{0, 0, 0, 0}, {0, 1, 0, 1}, {0, 1, 2, 1}, {0, 1, 2, 3}};
     const camber_value number = *value;
@@ -207,7 +206,7 @@ static bool to_padding(camber_evaluation *e, camber_value *value) {
     return true;
 }
 
-/* The first operand that is a padding counts. */
+/* Uses the first operand that is a padding. */
 bool camber_evaluate_to_padding(camber_evaluation *e, const camber_node *node, camber_value *value) {
     for (uint32_t i = 0; i < node->count; i++) {
         if (!camber_evaluate_operand(e, node, i, value))
@@ -251,7 +250,7 @@ bool camber_evaluate_to_anchors(camber_evaluation *e, const camber_node *node, c
 
 /* ---- Scripts ---- */
 
-/* All scripts are shaped. */
+/* The result is always true, because all scripts are shaped. */
 static bool evaluate_is_supported_script(camber_evaluation *e, const camber_node *node, camber_value *value) {
     const char *text;
     if (!camber_evaluate_string(e, node, 0, &text))

@@ -192,8 +192,8 @@ static bool compile_reader(camber_compiler *c, const camber_operator *row, json_
 
 /* ---- The style's state ---- */
 
-/* Works like a constant, but needs a function of its own: it must not be folded, because its type counts as unknown
- * until it is evaluated. */
+/* Works like a constant, but needs a separate function: it must not be folded, because its type counts as unknown until
+ * it is evaluated. */
 bool camber_evaluate_state(camber_evaluation *e, const camber_node *node, camber_value *value) {
     (void)e;
     *value = node->value;

@@ -1,9 +1,8 @@
-/* Numbers as texts for people: "number-format" with digits, a currency or a unit.
+/* Numbers as texts for readers: "number-format" with digits, a currency or a unit.
  *
- * Input: a number and options. Output: its text as the language of en-US writes it, whatever the locale that is asked
- * for: commas between thousands, a point before the fraction. Digits are the fewest that tell the number from others,
- * rounded where more are there than wanted. Each operator's row stands in the table at the end.
- */
+ * Input: a number and options. Output: its text as in US English, whatever locale is asked for: commas between
+ * thousands, a point before the fraction. It has the fewest digits that distinguish the number from others, and is
+ * rounded if these are more than wanted. The table at the end has each operator's row. */
 #include "style/evaluation.h"
 #include "style/operators.h"
 #include "style/text.h"
@@ -17,7 +16,7 @@
 
 enum { FRACTION_MAX = 100, DIGITS_MAX = 40, TEXT_MAX = 640 };
 
-/* 0.ddd * 10^point: the digits without zeros at their end. */
+/* The number 0.ddd * 10^point. The digits have no zeros at their end. */
 typedef struct decimal {
     char digits[DIGITS_MAX];
     int count, point;
@@ -42,7 +41,7 @@ static decimal read_decimal(double magnitude) {
     return made;
 }
 
-/* Rounds to so many digits after the point, halves away from 0. */
+/* Rounds to `fraction` digits after the point, and halves away from 0. */
 static void round_decimal(decimal *d, int fraction) {
     const int kept = d->point + fraction;
     if (kept >= d->count)
@@ -68,7 +67,7 @@ static char digit_at(const decimal *d, int place) {
     return place >= 0 && place < d->count ? d->digits[place] : '0';
 }
 
-/* Writes a magnitude with at least least, at most most digits after the point. */
+/* Writes a magnitude with at least `least` and at most `most` digits after the point. */
 static void write_magnitude(double magnitude, int least, int most, char text[TEXT_MAX]) {
     decimal d = read_decimal(magnitude);
     char *at = text;
@@ -97,7 +96,7 @@ typedef struct currency {
     int digits;
 } currency;
 
-/* Others are written as their code and a no-break space, with two digits. */
+/* Other currencies are written as their code and a no-break space, with two digits after the point. */
 static const currency currencies[] = {
     {"USD", "$", 2},
     {"EUR", "\xe2\x82\xac", 2},
@@ -127,7 +126,7 @@ static const currency currencies[] = {
 };
 
 typedef struct unit {
-    const char *name, *one, *many; /* behind the number */
+    const char *name, *one, *many; /* written after the number */
 } unit;
 
 static const unit units[] = {
@@ -207,7 +206,7 @@ static const unit *find_unit(const char *name) {
 /* The operands. */
 enum { FORMAT_NUMBER, FORMAT_LOCALE, FORMAT_CURRENCY, FORMAT_UNIT, FORMAT_LEAST, FORMAT_MOST };
 
-/* A number of digits; unchanged if the option is not given. */
+/* Reads a number of digits. *digits is unchanged if the option is not given. */
 static bool read_digits(camber_evaluation *e, const camber_node *node, uint32_t operand, bool *given, int *digits) {
     camber_value value;
     if (!camber_evaluate_operand(e, node, operand, &value))
@@ -221,7 +220,7 @@ static bool read_digits(camber_evaluation *e, const camber_node *node, uint32_t 
     return true;
 }
 
-/* Moves the bound that was not given to the one that was. */
+/* Reads both bounds of the digits after the point. If only one is given, the other is moved to it if necessary. */
 static bool read_fraction(camber_evaluation *e, const camber_node *node, int *least, int *most) {
     bool has_least, has_most;
     if (!read_digits(e, node, FORMAT_LEAST, &has_least, least) || !read_digits(e, node, FORMAT_MOST, &has_most, most))
@@ -279,7 +278,8 @@ static bool push_option(camber_compiler *c, json_t *option, const char *name, ca
     return true;
 }
 
-/* ["number-format", number, {"locale": ..., "currency": ..., "unit": ..., "min-fraction-digits": ..., ...}]. */
+/* Compiles ["number-format", number, {"locale": ..., "currency": ..., "unit": ..., "min-fraction-digits": ..., ...}].
+ */
 static bool compile_number_format(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                   uint32_t *node) {
     static const struct {

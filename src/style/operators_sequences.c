@@ -204,7 +204,7 @@ static bool compile_at(camber_compiler *c, const camber_operator *row, json_t *a
     return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type}, first_operand, node);
 }
 
-/* Moves an index of slice into 0 to count. Negative indices count from the end. */
+/* Clamps an index of slice to the range from 0 to count. Negative indices count from the end. */
 static size_t slice_index(double index, size_t count) {
     if (isnan(index))
         return 0;

@@ -1,7 +1,7 @@
 /* Types: assertions, conversions and colours.
  *
  * If the compiler cannot know a type, as with ["get", ...], a node asserts or converts it. Conversions follow
- * ECMAScript where the specification does. The table at the end has each operator's row. */
+ * ECMAScript if the specification does. The table at the end has each operator's row. */
 #include "style/color.h"
 #include "style/evaluation.h"
 #include "style/operators.h"

@@ -45,7 +45,7 @@ const camber_layer_paint camber_default_paint = {
 #define AT(member) .offset = offsetof(camber_layer_paint, member)
 #define NOWHERE .offset = CAMBER_NO_OFFSET
 
-/* Rows of symbol layers: camber_symbol holds them (symbol.c). */
+/* Rows of symbol layers. camber_symbol has the values of these properties (symbol.c). */
 #define SYMBOL_LAYOUT(NAME, ...)                                                                                       \
     { .kind = CAMBER_LAYER_SYMBOL, .layout = true, NOWHERE, .property = {.name = NAME, __VA_ARGS__}, }
 #define SYMBOL_PAINT(NAME, ...)                                                                                        \

@@ -18,8 +18,8 @@ static bool same_curve(curve a, curve b) {
     return a.kind == b.kind && a.node == b.node;
 }
 
-/* The specification's rule: zoom is the input of one step or interpolate at the top, or inside a let or a coalesce
- * there. Operands that do not read the zoom have no curve, so only the path to zoom is walked. */
+/* The specification's rule: zoom is the input of one step or interpolate, which is at the top or inside a let or a
+ * coalesce at the top. Operands that do not read the zoom have no curve, so only the path to zoom is walked. */
 static curve find_curve(const camber_expression *e, uint32_t index) {
     const camber_node *node = &e->nodes[index];
     const curve own = {index, CURVE_ONE};

@@ -1,8 +1,8 @@
 /* Turns a line-gradient into a ramp of colour stops.
  *
- * Input: an expression of line-progress. Output: sorted stops. There are stops at the stops of the expression's own
- * curves. Between these, more are added where the colour bends, so that linear interpolation between stops is as good
- * as the expression. */
+ * Input: an expression of line-progress. Output: sorted stops. The stops of the expression's own curves are also stops
+ * of the ramp. Between these, more are added where the colour bends, so that linear interpolation between stops is as
+ * good as the expression. */
 #include "style/ramp.h"
 
 #include "style/evaluation.h"
@@ -24,7 +24,7 @@ enum { ROOM = 64 };
 typedef struct sampler {
     const camber_expression *expression;
     camber_layer_ramp *ramp;
-    size_t capacity;   /* of ramp->stops */
+    size_t capacity;   /* room in ramp->stops */
     bool failed;       /* out of memory */
     double cost, work; /* cost of one evaluation, and the work that may still be done */
     size_t spans;      /* spans still to be added; each needs two stops */

@@ -7,7 +7,7 @@
 struct camber_text_section {
     const char *text;  /* "" for an image */
     const char *image; /* its name. NULL: text */
-    /* Each is null if the section does not give it. */
+    /* Each of these is null if the section does not give it. */
     camber_value scale; /* a number */
     camber_value fonts; /* an array of strings */
     camber_value color;

@@ -71,7 +71,7 @@ static double mix_channel(double a, double b, double t) {
     return a + t * (b - a);
 }
 
-/* Mixes hues the shorter way round. A grey takes the other colour's hue, and black also its chroma. */
+/* Mixes hues along the shorter arc. A grey takes the other colour's hue, and black also takes its chroma. */
 static camber_color mix_hcl(camber_color low, camber_color high, double t) {
     const hcl a = to_hcl(low), b = to_hcl(high);
     double h = isnan(a.h) ? b.h : a.h, c = mix_channel(a.c, b.c, t);

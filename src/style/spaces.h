@@ -1,4 +1,4 @@
-/* Mixing two colours, also in colour spaces that look even to people. */
+/* Mixing two colours, also in colour spaces in which steps look even. */
 #ifndef CAMBER_STYLE_SPACES_H
 #define CAMBER_STYLE_SPACES_H
 

@@ -83,7 +83,7 @@ static bool read_px(const json_t *image, const char *key, double least, uint32_t
     return true;
 }
 
-/* Reads numbers of px that ascend from 0 to side, at most. */
+/* Reads numbers of px in ascending order, from 0 to side at most. */
 static bool read_ascending(const json_t *array, size_t count, uint32_t side, float *px) {
     bool fits = json_array_size(array) == count;
     for (size_t i = 0; fits && i < count; i++) {
@@ -94,7 +94,8 @@ static bool read_ascending(const json_t *array, size_t count, uint32_t side, flo
     return fits;
 }
 
-/* Reads the parts of a side that may be stretched, each a pair that begins after the one before. */
+/* Reads the parts of a side that may be stretched. Each part is a pair of numbers, and begins at or after the end of
+ * the previous part. */
 static camber_status read_stretches(index_reader *r, const json_t *array, uint32_t side, float (**stretches)[2],
                                     size_t *count) {
     const size_t size = json_array_size(array);
@@ -110,7 +111,7 @@ static camber_status read_stretches(index_reader *r, const json_t *array, uint32
     return json_is_array(array) ? CAMBER_OK : CAMBER_ERROR_INPUT;
 }
 
-/* Reads the place of a text, left, top, right, bottom; without one it is the whole image. */
+/* Reads the rectangle for text: left, top, right, bottom. If there is none, it is the whole image. */
 static bool read_content(const json_t *array, camber_sprite_image *image) {
     const uint32_t sides[2] = {image->width, image->height};
     image->has_content = array != NULL;
@@ -127,7 +128,7 @@ static bool read_content(const json_t *array, camber_sprite_image *image) {
     return true;
 }
 
-/* Reads how a text is fitted into the image. */
+/* Reads how the image is fitted to a text. */
 static camber_status read_fit(index_reader *r, const char *name, const json_t *json, camber_sprite_image *image) {
     camber_status status =
         read_stretches(r, json_object_get(json, "stretchX"), image->width, &image->stretch_x, &image->stretch_x_count);
@@ -150,7 +151,7 @@ static void free_image(camber_context *context, camber_sprite_image *image) {
     camber_free(context, image->name);
 }
 
-/* Names the image and adds it, which takes all that it has. */
+/* Names the image and adds it to the sprites, which then own its memory. */
 static camber_status keep_image(index_reader *r, const char *name, camber_sprite_image *image) {
     camber_sprites *sprites = r->sprites;
     const bool plain = strcmp(r->id, "default") == 0;
@@ -373,7 +374,7 @@ bool camber_sprites_warn_missing(camber_sprites *sprites, const char *name) {
 
 /* ---- The sprites of features ---- */
 
-/* Whether a layer that is seen may name an image. */
+/* Whether a visible layer may name an image. */
 static bool has_images(const camber_style *style) {
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;

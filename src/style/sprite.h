@@ -16,11 +16,11 @@ typedef struct camber_sprite_image {
     double pixel_ratio;           /* px of the sheet per CSS px */
     camber_image image;           /* these px, as a paint needs them */
     bool sdf;                     /* the alpha is a distance; patterns draw it unchanged */
-    /* Parts that may be stretched, as pairs of first and end px of the image, in ascending order. 0: all of it. */
+    /* Parts that may be stretched, as pairs of first and end px of the image, in ascending order. 0: the whole side. */
     float (*stretch_x)[2], (*stretch_y)[2];
     size_t stretch_x_count, stretch_y_count;
     bool has_content;
-    float content[4]; /* left, top, right, bottom, px of the image: where a text goes. All of it without has_content */
+    float content[4]; /* px: left, top, right, bottom of the space for text; without has_content, all of it */
 } camber_sprite_image;
 
 typedef struct camber_sprites {
@@ -34,9 +34,10 @@ typedef struct camber_sprites {
 } camber_sprites;
 
 /* Loads the style's sprites. If the ratio is above 1, the high-resolution sheets (@2x) are used, if they exist. URLs
- * are resolved like those of sources. A sprite on the network causes a warning, and has no images. Returns
+ * are resolved like the URLs of sources. A sprite on the network causes a warning, and has no images. Returns
  * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (not a PNG or not an index, an image outside its sheet, or an unknown
- * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 16384 px a side or 2^24 px), CAMBER_ERROR_MEMORY. */
+ * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet with a side above 16384 px, or with more than 2^24 px),
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_sprites_load(camber_context *context, const camber_style *style, const char *base_path,
                                   double ratio, camber_sprites **sprites);
 void camber_sprites_destroy(camber_sprites *sprites);

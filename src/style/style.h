@@ -73,7 +73,7 @@ typedef enum camber_property_id {
     CAMBER_CIRCLE_STROKE_WIDTH,
     CAMBER_CIRCLE_STROKE_COLOR,
     CAMBER_CIRCLE_STROKE_OPACITY,
-    /* Those of symbol layers, which symbol.h evaluates. */
+    /* Properties of symbol layers, which symbol.h evaluates. */
     CAMBER_SYMBOL_PLACEMENT,
     CAMBER_SYMBOL_SPACING,
     CAMBER_SYMBOL_AVOID_EDGES,
@@ -214,7 +214,7 @@ unsigned camber_style_layer_kinds(camber_layer_kind kind);
  * changes. */
 void camber_style_describe_layers(camber_style *style);
 
-/* Whether the feature passes the source's filter. A filter that fails to evaluate is false. */
+/* Whether the feature passes the source's filter. A filter that cannot be evaluated counts as false. */
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
 
 /* Whether the layer draws features of this class at this zoom: visibility, zoom range and filter. A filter that fails
@@ -274,14 +274,14 @@ typedef struct camber_layer_look {
 camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);
 /* feature may be NULL for a background. A property that cannot be evaluated has its default. */
 camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature);
-/* Does both. */
+/* Evaluates a layer for a zoom and a feature, in one call. */
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature);
 /* Returns the border's colour for a line that has none. */
 camber_color camber_border_color(camber_color color);
 /* Finds the image that a layer's pattern names at a zoom. *image is a number from 1, as images->find returns it. 0: it
- * names none, or a missing one, for which images->missing is called. false: the layer has no pattern. feature may be
- * NULL for a background. */
+ * names no image, or a missing image, for which images->missing is called. false: the layer has no pattern. feature may
+ * be NULL for a background. */
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */

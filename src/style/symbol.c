@@ -1,9 +1,8 @@
 /* Evaluates a symbol layer for a feature: its layout and paint by the table of properties, the sections of its text,
- * and what the specification makes of properties together, such as "auto".
+ * and values that follow from several properties, such as "auto".
  *
  * Input: a layer at a zoom, a feature. Output: camber_symbol. Properties are evaluated in memory of the evaluation, and
- * texts are copied from there.
- */
+ * texts are copied from there. */
 #include "style/symbol.h"
 
 #include "style/properties.h"
@@ -13,7 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Texts in either case. */
+/* The case that texts are written in. */
 typedef enum transform {
     TRANSFORM_NONE = 0,
     TRANSFORM_UPPER,
@@ -23,7 +22,7 @@ typedef enum transform {
 /* "auto" comes after the alignments that text and icons may have. */
 enum { AUTO_ALIGNMENT = 2, AUTO_TEXT_ALIGNMENT = 3, NO_OVERLAP = -1 };
 
-/* The symbol, and the values that parts of it follow from. */
+/* The symbol, and values from which parts of it follow. */
 typedef struct evaluated {
     camber_symbol symbol;
     int icon_rotation, icon_pitch, text_rotation, text_pitch;
@@ -56,7 +55,7 @@ static const evaluated defaults = {
 
 #define AT(member) offsetof(evaluated, member)
 
-/* Where the values of properties are stored as they are. */
+/* The properties whose values are stored unchanged, and where. */
 static const struct {
     camber_property_id id;
     size_t offset;
@@ -114,7 +113,7 @@ static const struct {
     {CAMBER_TEXT_TRANSLATE_ANCHOR, AT(symbol.text.translate_anchor)},
 };
 
-/* A layer that is evaluated for a feature. */
+/* A layer that is being evaluated for a feature. */
 typedef struct reader {
     const camber_style_layer *layer;
     camber_evaluation *evaluation;
@@ -122,7 +121,7 @@ typedef struct reader {
     evaluated *to;
 } reader;
 
-/* false: the layer does not have it, or it cannot be evaluated. */
+/* false: the layer does not have the property, or it cannot be evaluated. */
 static bool evaluate(const reader *r, camber_property_id id, camber_value *value) {
     const camber_expression *expression = r->layer->properties[id];
     return expression && camber_expression_evaluate(expression, r->evaluation, value);
@@ -139,7 +138,7 @@ static void read_fields(const reader *r) {
     }
 }
 
-/* ---- Properties together ---- */
+/* ---- Values that follow from several properties ---- */
 
 static camber_symbol_overlap overlap_of(int overlap, bool allowed) {
     return overlap != NO_OVERLAP ? (camber_symbol_overlap)overlap
@@ -147,7 +146,7 @@ static camber_symbol_overlap overlap_of(int overlap, bool allowed) {
                                  : CAMBER_OVERLAP_NEVER;
 }
 
-/* Along a line text and icons turn with the map, and if they turn with it they lie on it. */
+/* Along a line, text and icons turn with the map. If they turn with the map, they are also flat on it. */
 static void resolve_alignments(evaluated *e) {
     camber_symbol *symbol = &e->symbol;
     const camber_symbol_alignment automatic =
@@ -187,7 +186,7 @@ static bool is_name(const camber_value *value, const char *name) {
     return value->type == CAMBER_VALUE_STRING && strcmp(value->string, name) == 0;
 }
 
-/* Without the property, text at points is horizontal, and text along lines is either. */
+/* Without the property, text at points is horizontal, and text along lines may be horizontal or vertical. */
 static void read_writing_modes(const reader *r) {
     camber_symbol *symbol = &r->to->symbol;
     camber_value modes;
@@ -230,7 +229,8 @@ static void side_of(camber_text_anchor anchor, int *x, int *y) {
     *y = sides[anchor][1];
 }
 
-/* The offset of a variable anchor, away from the anchor: the radial one, else the text's offset without its signs. */
+/* Computes the offset of a variable anchor, which is away from the anchor: the radial offset or, without it, the text's
+ * offset without its signs. */
 static void offset_of(const camber_symbol *symbol, camber_text_anchor anchor, double offset[2]) {
     int x, y;
     side_of(anchor, &x, &y);
@@ -270,7 +270,7 @@ static void read_anchors(const reader *r) {
         for (uint32_t i = 0; i < value.count; i++)
             if (!add_anchor(symbol, value.items + i))
                 break;
-    /* Beside a single anchor a radial offset of 0 leaves the text's offset. */
+    /* With a single anchor, a radial offset of 0 means that the text's offset is used. */
     if (symbol->variable_anchor_count == 0 && fabs(symbol->radial_offset_em) <= 0.0)
         symbol->has_radial_offset = false;
 }
@@ -295,7 +295,7 @@ static bool keep_fonts(const reader *r, const camber_value *array, fonts *kept) 
     return kept->names != NULL;
 }
 
-/* The fonts of the layer. */
+/* Reads the fonts of the layer. */
 static bool read_fonts(const reader *r, fonts *kept) {
     static const camber_value names[] = {{.type = CAMBER_VALUE_STRING, .string = "Open Sans Regular"},
                                          {.type = CAMBER_VALUE_STRING, .string = "Arial Unicode MS Regular"}};
@@ -305,7 +305,8 @@ static bool read_fonts(const reader *r, fonts *kept) {
     return keep_fonts(r, &value, kept);
 }
 
-/* Keeps the text in the case that is asked for. If the evaluation has no memory left for that, it stays as it is. */
+/* Keeps the text in the case that the layer asks for. If the evaluation has no memory left to change it, it is kept
+ * unchanged. */
 static bool keep_transformed(const reader *r, const char *text, const char **kept) {
     camber_string changed = {.e = r->evaluation};
     camber_value value;
@@ -317,7 +318,7 @@ static bool keep_transformed(const reader *r, const char *text, const char **kep
     return keep_text(r, text, kept);
 }
 
-/* An option of another type than expected counts as none. */
+/* An option whose type is not the expected one is treated as absent. */
 static bool keep_section(const reader *r, const camber_text_section *from, const fonts *layer,
                          camber_symbol_section *to) {
     const camber_symbol_part *text = &r->to->symbol.text;
@@ -379,7 +380,7 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol) {
     camber_evaluation evaluation;
     evaluated made;
-    memcpy(&made, &defaults, sizeof made); /* and so its padding, since symbols are compared byte by byte */
+    memcpy(&made, &defaults, sizeof made); /* copies the padding, too, because symbols are compared byte by byte */
     const reader r = {look->layer, &evaluation, arena, &made};
     camber_evaluation_begin(&evaluation, look->zoom, feature);
     evaluation.images = images;
@@ -399,7 +400,7 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
 
 /* ---- Layers ---- */
 
-/* Whether a value shows something: an image that is named, or a text. */
+/* Whether a value shows something: it names an image, or is a text. */
 static bool shows(const camber_value *value) {
     if (value->type == CAMBER_VALUE_STRING)
         return value->string[0] != 0;

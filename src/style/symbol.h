@@ -1,4 +1,4 @@
-/* A symbol layer's answer for a feature: its text, its icon, where they go, and how they are drawn. */
+/* How a symbol layer labels a feature: the text, the icon, where they are placed, and how they are drawn. */
 #ifndef CAMBER_STYLE_SYMBOL_H
 #define CAMBER_STYLE_SYMBOL_H
 
@@ -13,7 +13,7 @@ typedef enum camber_symbol_placement {
 } camber_symbol_placement;
 
 typedef enum camber_symbol_order {
-    CAMBER_SYMBOL_ORDER_AUTO = 0,   /* by sort key if there is one, else by the position on the screen */
+    CAMBER_SYMBOL_ORDER_AUTO = 0,   /* by sort key if there is one, otherwise by the position on the screen */
     CAMBER_SYMBOL_ORDER_VIEWPORT_Y, /* by the position on the screen if labels may overlap */
     CAMBER_SYMBOL_ORDER_SOURCE,
 } camber_symbol_order;
@@ -21,14 +21,15 @@ typedef enum camber_symbol_order {
 typedef enum camber_symbol_overlap {
     CAMBER_OVERLAP_NEVER = 0,
     CAMBER_OVERLAP_ALWAYS,
-    CAMBER_OVERLAP_COOPERATIVE, /* with others that are cooperative or always */
+    CAMBER_OVERLAP_COOPERATIVE, /* it may overlap labels that are cooperative or always overlap */
 } camber_symbol_overlap;
 
-/* Text or an icon turns and tilts with one of these. The specification's "auto" has been resolved by the placement. */
+/* Text or an icon turns and tilts with the map or with the viewport. The specification's "auto" is replaced by a value
+ * that depends on the placement. */
 typedef enum camber_symbol_alignment {
     CAMBER_ALIGN_MAP = 0,
     CAMBER_ALIGN_VIEWPORT,
-    CAMBER_ALIGN_VIEWPORT_GLYPH, /* of text along lines: glyphs stand upright beside each other along the line */
+    CAMBER_ALIGN_VIEWPORT_GLYPH, /* for text along lines: each glyph is upright, and the glyphs follow the line */
 } camber_symbol_alignment;
 
 typedef enum camber_icon_text_fit {
@@ -38,16 +39,16 @@ typedef enum camber_icon_text_fit {
     CAMBER_FIT_BOTH = 3,
 } camber_icon_text_fit;
 
-/* Both text and icons have these. Lengths are CSS px if the name does not say otherwise. */
+/* Properties that both text and icons have. Lengths are CSS px unless the name says otherwise. */
 typedef struct camber_symbol_part {
     camber_symbol_overlap overlap;
-    bool ignore_placement; /* others may be placed over it */
+    bool ignore_placement; /* other labels may be placed over it */
     bool optional;         /* the other part may be shown without it */
     camber_symbol_alignment rotation_alignment, pitch_alignment;
     double rotate_deg;
     bool keep_upright;
     double padding_px[4]; /* top, right, bottom, left */
-    camber_color color;   /* the alpha includes the opacity, as that of the halo */
+    camber_color color;   /* the alpha includes the opacity, as does the halo's */
     camber_color halo_color;
     double halo_width_px, halo_blur_px;
     double translate_px[2];
@@ -63,7 +64,7 @@ typedef struct camber_symbol_section {
     size_t font_count;
     double scale;
     bool has_color;
-    camber_color color; /* with has_color: in place of the text's; the alpha includes the opacity */
+    camber_color color; /* with has_color: replaces the text's colour; the alpha includes the opacity */
     camber_text_align align;
 } camber_symbol_section;
 
@@ -95,20 +96,21 @@ typedef struct camber_symbol {
     double text_offset_em[2];
     bool has_radial_offset;
     double radial_offset_em;
-    /* Anchors to try in turn, each with its offset. 0: text_anchor with text_offset_em or the radial offset. */
+    /* Anchors to try in turn, each with its offset. If there are none, text_anchor is used, with text_offset_em or the
+     * radial offset. */
     camber_text_anchor variable_anchors[CAMBER_SYMBOL_ANCHORS_MAX];
     double variable_offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
-    bool has_variable_offsets; /* the list gave them; else they follow from the text's offset or radial offset */
+    bool has_variable_offsets; /* the style gives them; otherwise they follow from the text's offset or radius */
     size_t variable_anchor_count;
     double max_angle_deg;
-    bool horizontal, vertical; /* writing modes that are allowed */
-    bool vertical_first;       /* vertical is preferred if both are */
+    bool horizontal, vertical; /* allowed writing modes */
+    bool vertical_first;       /* if both are allowed, vertical is preferred */
     camber_symbol_part text;
 } camber_symbol;
 
 /* Evaluates the layout and paint of a symbol layer for a feature at the look's zoom. images: which images exist, for
- * "image" and "coalesce"; NULL: any. Strings and sections live in the arena, or in the style. A property that cannot be
- * evaluated has its default. Symbols of equal values are equal byte by byte, except for their pointers.
+ * "image" and "coalesce"; NULL: any. Strings and sections are in the arena, or in the style. A property that cannot be
+ * evaluated has its default. Symbols with equal values are equal byte by byte, except for their pointers.
  * Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_layer_look_symbol(const camber_layer_look *look, const camber_feature_view *feature,
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol);
@@ -116,7 +118,7 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
 bool camber_style_layer_may_label(const camber_style_layer *layer, const camber_feature_view *feature);
 /* Whether a symbol layer may have icons that turn with lines. */
 bool camber_style_layer_turns_icons(const camber_style_layer *layer);
-/* Whether a symbol layer may name images: icons, or images among text. */
+/* Whether a symbol layer may name images: icons, or images within text. */
 bool camber_style_layer_names_images(const camber_style_layer *layer);
 
 #endif

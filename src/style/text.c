@@ -75,7 +75,7 @@ static bool add_color(camber_string *text, camber_color color) {
     return add(text, rgb) && add_number(text, true_alpha((double)color.a)) && add(text, ")");
 }
 
-/* The text of all sections; images have none. */
+/* Adds the text of all sections. Images have no text. */
 static bool add_sections(camber_string *text, const camber_value *value) {
     for (uint32_t i = 0; i < value->count; i++)
         if (!add(text, value->sections[i].text))

@@ -47,10 +47,10 @@ camber_typing camber_typing_merge(camber_typing a, camber_typing b);
 /* Whether a value of type actual may be used where expected is required. */
 bool camber_typing_fits(camber_typing expected, camber_typing actual);
 
-/* Writes the specification's name of a type, as "array<number, 2>". */
+/* Writes the specification's name for a type, such as "array<number, 2>". */
 #define CAMBER_TYPING_TEXT_SIZE 96
 const char *camber_typing_write(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
-/* Returns the name of a type in messages, as "a number" or "an array<number, 2>". */
+/* Returns the name of a type for messages, such as "a number" or "an array<number, 2>". */
 const char *camber_typing_name(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
 
 #endif

@@ -1,4 +1,4 @@
-/* The order of text of both directions, by FriBidi: Unicode's algorithm, a paragraph at a time. */
+/* The order of text that mixes both directions: FriBidi applies Unicode's algorithm to one paragraph at a time. */
 #include "text/shaping.h"
 
 #include <fribidi.h>
@@ -28,7 +28,7 @@ camber_status camber_bidi_find_levels(camber_context *context, const uint32_t *c
 camber_status camber_shaping_order(camber_context *context, camber_shaping *shaping) {
     camber_status status = CAMBER_OK;
     if (!shaping->has_right_to_left)
-        return CAMBER_OK; /* levels are 0 */
+        return CAMBER_OK; /* all levels are 0 */
     uint8_t *levels = camber_alloc(context, shaping->count, 1);
     if (!levels)
         return CAMBER_ERROR_MEMORY;
@@ -44,7 +44,8 @@ camber_status camber_shaping_order(camber_context *context, camber_shaping *shap
     return status;
 }
 
-/* Rule L2: from the highest level down to the lowest odd one, each stretch of at least that level turns round. */
+/* Rule L2: from the highest level down to the lowest odd one, each stretch of characters of at least that level is
+ * reversed. */
 void camber_bidi_find_order(const uint8_t *levels, size_t count, uint32_t *order) {
     uint8_t highest = 0;
     for (size_t i = 0; i < count; i++) {

@@ -1,22 +1,22 @@
-/* Where lines break: MapLibre's rules. Of all ways to break a text at the places that allow it, the one counts whose
- * lines differ least from the average, where
+/* Decides where lines break, by MapLibre's rules. Of all ways to break a text at places that allow a break, it takes
+ * the one with the least badness:
  *
  *     average  = width of the whole text / number of lines that it needs
  *     badness  = (width - average)^2 of each line in 1/24 em, plus penalties for breaks at bad places;
- *                of the last line half of it if the line is short, twice if it is long.
+ *                the last line counts half if it is short, and twice if it is long.
  *
- * A newline always breaks. Breaks before it are not looked at from after it, and of the others only the last ones, as
- * many as keep the work linear in a long text. */
+ * A newline always breaks a line, so no break after it is paired with a break before it. Of the breaks since the last
+ * newline, only the latest are tried, so few that the work stays linear in a long text. */
 #include "text/scripts.h"
 #include "text/shaping.h"
 
 #include <math.h>
 
-static const float UNITS = 24.0f; /* of an em, for penalties */
+static const float UNITS = 24.0f; /* units per em in which badness is computed */
 
 typedef struct line_break {
     uint32_t end;   /* the character that follows the break */
-    uint32_t prior; /* index of the break before it + 1. 0: none */
+    uint32_t prior; /* index + 1 of the break before this one. 0: none */
     double x;
     double badness;
 } line_break;
@@ -58,18 +58,19 @@ typedef struct breaker {
     const camber_shaping *shaping;
     line_break *breaks;
     size_t count;
-    size_t first;       /* break that is looked at */
-    line_break newline; /* the last one, or the beginning */
+    size_t first;       /* the first break after the last newline */
+    line_break newline; /* the last newline, or the beginning of the text */
     double average;
 } breaker;
 
-/* How many breaks are looked at before one. */
+/* Returns how many earlier breaks are tried for each break. */
 static size_t get_reach(const camber_shaping *shaping) {
     const size_t reach = ((size_t)1 << 22) / (shaping->count + 1);
     return reach < 64 ? 64 : reach;
 }
 
-/* Finds the best break before this one. Its badness is that of its place so far. */
+/* Finds the best previous break, and adds the badness of the lines up to this one to the penalty that made->badness has
+ * so far. */
 static void choose_prior(const breaker *b, line_break *made, bool is_last) {
     const size_t reach = get_reach(b->shaping);
     const size_t first = b->count > b->first + reach ? b->count - reach : b->first;
@@ -79,7 +80,7 @@ static void choose_prior(const breaker *b, line_break *made, bool is_last) {
     for (size_t i = b->count; i > first; i--) {
         const line_break *prior = &b->breaks[i - 1];
         const double badness = prior->badness + get_badness(made->x - prior->x, b->average, is_last);
-        /* The last of equal ones counts. */
+        /* The last of several equally good breaks is used. */
         if (is_found ? badness < best : badness <= best) {
             best = badness;
             made->prior = (uint32_t)i;
@@ -128,7 +129,7 @@ static void find_breaks(breaker *b, bool has_width, float spacing) {
     add_break(b, (uint32_t)shaping->count, x, 0.0);
 }
 
-/* A line without the white space at its ends. */
+/* Returns a line without the white space at its ends. */
 static camber_line_break trim(const camber_shaping *shaping, uint32_t first, uint32_t end) {
     while (first < end && camber_is_white(shaping->codes[first]))
         first++;

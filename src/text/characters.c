@@ -18,7 +18,7 @@ void camber_shaping_free(camber_context *context, camber_shaping *shaping) {
     hb_buffer_destroy(shaping->buffer);
 }
 
-/* Reads a character, and returns its number of bytes. One byte that is not UTF-8 is U+FFFD. */
+/* Reads a character, and returns how many bytes it takes. A byte that is not UTF-8 is read as U+FFFD. */
 static size_t read_code(const unsigned char *text, size_t left, uint32_t *code) {
     static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
     const size_t size = text[0] < 0x80 ? 1 : text[0] < 0xc2 ? 0 : text[0] < 0xe0 ? 2 : text[0] < 0xf0 ? 3 : 4;
@@ -56,7 +56,7 @@ static bool is_separator(uint32_t code) {
     return (code >= 0x1c && code <= 0x1e) || code == 0x85 || code == 0x2028 || code == 0x2029;
 }
 
-/* Whether a character's paragraph may go from right to left. */
+/* Whether a paragraph with this character may run from right to left. */
 static bool is_right_to_left(uint32_t code) {
     return (code >= 0x590 && code <= 0x8ff) || (code >= 0x200f && code <= 0x202e && code != 0x2010) ||
            (code >= 0x2066 && code <= 0x2069) || (code >= 0xfb1d && code <= 0xfdff) ||

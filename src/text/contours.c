@@ -1,25 +1,25 @@
-/* Marching squares. Corners are the values, and one row and column more on each side, which are outside. A
- * ring crosses the sides of squares at which one end is inside and the other is not. In each square, it goes from the
- * side that it enters by to the side that it leaves by, with the inside to its right:
+/* Marching squares. The corners of the squares are the values, plus one more row or column on each side, which is
+ * outside. A ring crosses each side of a square that has one end inside and the other outside. In each square, it runs
+ * from the side where it enters to the side where it leaves, with the inside to its right:
  *
  *     o---x     o outside, x inside. The ring enters from the right side and leaves through the top:
- *     |  /      each crossing has one crossing that follows it, so walking from one to the next gives the rings.
+ *     |  /      each crossing is followed by one other crossing, so walking from one to the next gives the rings.
  *     o-' o
  *
- * Then points that a straight line passes within a small tolerance are left out. */
+ * Afterwards, a point is left out if a straight line between other points passes it within a small tolerance. */
 #include "text/contours.h"
 
 #include <math.h>
 
 /* Values are rounded down from 255 - (64 + 32 d), d px outside of the edge, so the edge is between 191 and 192. */
 static const float EDGE = 191.5f;
-/* Distance from a ring to the points that are left out of it: 1/40 px of the bitmap. */
+/* The most distance from a ring to a point that is left out of it: 1/40 px of the bitmap. */
 static const float TOLERANCE_EM = 1.0f / 960.0f;
 
 typedef struct grid {
     const camber_contour_source *source;
-    uint32_t width, height; /* corners */
-    uint32_t *next;         /* a crossing -> the next one + 1. 0: nothing crosses there, or it is done */
+    uint32_t width, height; /* in corners */
+    uint32_t *next; /* a crossing -> the next one + 1. 0: no ring crosses the side, or the crossing has been used */
 } grid;
 
 static float get_value(const grid *g, uint32_t x, uint32_t y) {
@@ -28,8 +28,8 @@ static float get_value(const grid *g, uint32_t x, uint32_t y) {
     return g->source->values[(size_t)(y - 1) * g->source->width + (x - 1)];
 }
 
-/* The number of a square's side: its top (0), right (1), bottom (2), left (3). Sides are numbered by the corner at
- * their left or top end. */
+/* Returns the number of a square's side: its top (0), right (1), bottom (2) or left (3). The number of a side is made
+ * from the corner at its left or top end. */
 static uint32_t get_side(const grid *g, uint32_t x, uint32_t y, int side) {
     switch (side) {
     case 0: return 2 * (y * g->width + x);
@@ -43,8 +43,9 @@ static void join_sides(grid *g, uint32_t x, uint32_t y, int from, int to) {
     g->next[get_side(g, x, y, from)] = get_side(g, x, y, to) + 1;
 }
 
-/* Walk around a square clockwise: top left, top right, bottom right, bottom left. A ring enters the square through a
- * side on which the walk goes out of the inside, and leaves it through one on which the walk goes in. */
+/* Joins the crossings of a square. Imagine walking around it clockwise: top left, top right, bottom right, bottom left.
+ * A ring enters the square through a side on which this walk leaves the inside, and leaves the square through a side on
+ * which the walk enters the inside. */
 static void join_square(grid *g, uint32_t x, uint32_t y) {
     const float values[4] = {get_value(g, x, y), get_value(g, x + 1, y), get_value(g, x + 1, y + 1),
                              get_value(g, x, y + 1)};
@@ -59,8 +60,8 @@ static void join_square(grid *g, uint32_t x, uint32_t y) {
     if (count == 1)
         join_sides(g, x, y, out[0], in[0]);
     else if (count == 2) {
-        /* Two corners across from each other are inside. They are one if the middle is, or nearly: else the
-         * thin strokes of small glyphs would fall apart. */
+        /* Two opposite corners are inside. They are joined if the middle is inside, or nearly so: otherwise the thin
+         * strokes of small glyphs would fall apart. */
         const bool is_joined = values[0] + values[1] + values[2] + values[3] > 4.0f * (EDGE - 4.0f);
         for (int i = 0; i < 2; i++) {
             const int after = (in[i] + 1) & 3, before = (in[i] + 3) & 3;
@@ -80,10 +81,10 @@ static void add_crossing(const grid *g, uint32_t side, camber_outline_maker *mak
     camber_outline_add_point(maker, g->source->left + px * g->source->scale, g->source->top + py * g->source->scale);
 }
 
-/* Directions in which a ring may go on from a point so that all points since then are near the straight line. */
+/* The directions in which a straight line from a point of a ring passes near all points that follow it. */
 typedef struct sector {
     float x, y;      /* the point */
-    float direction; /* of the first point after it; the others are relative to it */
+    float direction; /* towards the next point; low and high are relative to it */
     float low, high;
     float reach; /* distance of the farthest point */
 } sector;
@@ -110,7 +111,8 @@ static bool follow(sector *s, float x, float y) {
     return true;
 }
 
-/* Leaves out the points of the last ring that are on straight lines between others: stems have one for each pixel. */
+/* Leaves out points of the last ring that are on a straight line between others: stems have one such point per pixel.
+ */
 static void thin_ring(camber_outline_maker *maker) {
     if (maker->status)
         return;

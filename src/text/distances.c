@@ -1,6 +1,6 @@
-/* Distances between those of a bitmap. Along a stroke that is thinner than a pixel no pixel's centre is inside, and
- * between centres a mean would be outside, too. But distances are linear on both sides of the stroke's middle, so both
- * lines go on until they meet:
+/* Computes distances between the pixels of a bitmap of distances. If a stroke is thinner than a pixel, no pixel's
+ * centre is inside it, so the mean of two pixels would be outside, too. But distances are linear on both sides of the
+ * stroke's middle, so both lines are extended until they meet:
  *
  *                 M         the middle, inside
  *     edge ----- / \ -----
@@ -8,13 +8,13 @@
  *              /     \
  *             a'      b'
  *
- * If the values have such a ridge, or a valley between strokes that nearly touch, the value in the middle comes from
- * the nearer line; else it is the mean. */
+ * If the values have such a ridge, or a valley between strokes that nearly touch, the value in the middle is taken from
+ * the nearer line; otherwise it is the mean. */
 #include "text/distances.h"
 
 #include <math.h>
 
-/* The value between b and c, of four that follow each other. */
+/* Returns the value between b and c, which are the middle two of four consecutive values. */
 static float get_middle(float a, float b, float c, float d) {
     const float left = b + (b - a) / 2.0f, right = c + (c - d) / 2.0f;
     if (a < b && d < c)
@@ -24,7 +24,7 @@ static float get_middle(float a, float b, float c, float d) {
     return (b + c) / 2.0f;
 }
 
-/* Fills the places between values that are two steps apart along a line. */
+/* Computes the missing values between values that are two steps apart along a line. */
 static void fill_between(float *values, size_t step, size_t count) {
     for (size_t i = 0; i + 1 < count; i++) {
         const float *at = values + 2 * i * step;

@@ -1,4 +1,4 @@
-/* Opens fonts: maps their files, and asks HarfBuzz what is in them. */
+/* Opens fonts: maps their files, and lets HarfBuzz read them. */
 #include "text/outline.h"
 
 #include <errno.h>
@@ -7,7 +7,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* Font files are mapped, since text needs a small part of them, and those of ideographs have 20 MB. */
+/* Font files are mapped into memory, because a text needs only a small part of them, and a font of ideographs has 20
+ * MB. */
 typedef struct mapping {
     camber_context *context;
     void *bytes;
@@ -78,7 +79,8 @@ static camber_status make_face(camber_context *context, const char *name, hb_blo
     hb_font_extents_t extents = {0};
     hb_font_get_h_extents(made->font, &extents);
     made->ascender_em = (float)extents.ascender / made->units_per_em;
-    /* Ascenders centre the letters of most fonts in lines; those of scripts with high marks would push them down. */
+    /* With the ascenders of most fonts, letters are in the middle of their lines. The ascenders of fonts for scripts
+     * with high marks would push letters down. */
     made->ascender_em = fminf(fmaxf(made->ascender_em, 0.75f), 1.2f);
     hb_font_make_immutable(made->font);
     *face = made;

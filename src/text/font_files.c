@@ -1,4 +1,4 @@
-/* Fills the list of fonts from where there are some. */
+/* Fills the list of fonts from all of its origins. */
 #include "text/font_index.h"
 
 #include "base/embedded.h"

@@ -1,4 +1,4 @@
-/* Fonts of the caller's folders: their names come from the files themselves. */
+/* Fonts in the caller's folders. Their names are read from the files themselves. */
 #include "text/font_index.h"
 
 #include <ctype.h>

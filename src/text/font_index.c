@@ -1,4 +1,5 @@
-/* The list of fonts: their names as keys, which one a name means, and opening them when they are needed. */
+/* The list of fonts: keeps their names as keys, finds the font that a name means, and opens fonts when they are needed.
+ */
 #include "text/font_index.h"
 
 camber_font_entry *camber_font_index_add(camber_font_index *index, camber_font_origin origin, const char *path) {

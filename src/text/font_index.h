@@ -1,5 +1,5 @@
-/* The font files that text may be drawn with, and what each is called: first those of the caller's folders, then
- * those that fontconfig knows, then the fonts that camber ships. A file is opened when a text needs it. */
+/* The font files that text may be drawn with, and their names: first the fonts in the caller's folders, then the fonts
+ * that camber ships, then the fonts that fontconfig knows. A file is opened when a text needs it. */
 #ifndef CAMBER_TEXT_FONT_INDEX_H
 #define CAMBER_TEXT_FONT_INDEX_H
 
@@ -12,22 +12,22 @@ enum { CAMBER_FONT_KEYS = 8 };
 
 typedef enum camber_font_origin {
     CAMBER_FONT_FROM_FOLDER = 0,
-    CAMBER_FONT_SHIPPED, /* before the system's, so that it draws its names' texts alike everywhere */
+    CAMBER_FONT_SHIPPED, /* before the system's, so that texts in this font are alike on all machines */
     CAMBER_FONT_FROM_SYSTEM,
 } camber_font_origin;
 
 typedef struct camber_font_entry {
     camber_font_origin origin;
-    char *path;                                                           /* of a shipped font: its name */
-    uint32_t index;                                                       /* camber_face_open's */
+    char *path;                                                           /* a shipped font has its name here */
+    uint32_t index;                                                       /* as camber_face_open takes it */
     uint64_t whole_keys[CAMBER_FONT_KEYS], family_keys[CAMBER_FONT_KEYS]; /* font_name.h */
     size_t whole_count, family_count;
     camber_font_style style;
-    FcPattern *pattern;         /* of the system; else NULL */
+    FcPattern *pattern;         /* of a font of the system; otherwise NULL */
     const unsigned char *bytes; /* of a shipped font */
     size_t size_bytes;
     camber_face *face; /* NULL: not opened yet */
-    bool is_broken;    /* it could not be opened, which the log says */
+    bool is_broken;    /* it could not be opened; the log says why */
 } camber_font_entry;
 
 typedef struct camber_font_index {
@@ -42,30 +42,31 @@ camber_status camber_font_index_fill(camber_font_index *index, const char *const
                                      bool has_system);
 void camber_font_index_free(camber_font_index *index);
 
-/* Appends an entry for the file, whose path is copied. NULL: no memory. The pointer is valid until the next one. */
+/* Appends an entry for the file, whose path is copied. NULL: no memory. The pointer is valid until the next entry is
+ * added. */
 camber_font_entry *camber_font_index_add(camber_font_index *index, camber_font_origin origin, const char *path);
-/* Adds keys if there is room; a name that is NULL or empty adds none. */
+/* Adds the entry's names as keys if there is room. A name that is NULL or empty adds no key. */
 void camber_font_entry_name(camber_font_entry *entry, const char *family, const char *style, const char *full_name);
 
-/* Adds the files of a folder, whose suffix says that they are fonts, and those of folders in it. */
+/* Adds the files in a folder, and in the folders inside it, whose suffix says that they are fonts. */
 camber_status camber_font_index_add_folder(camber_font_index *index, const char *folder);
 /* Adds the system's fonts that have outlines. */
 camber_status camber_font_index_add_system(camber_font_index *index);
 
-/* The entry that a style means by a name: the one that is called so, or of its family the one with the nearest style.
- * SIZE_MAX: there is none. */
+/* Returns the entry that a style means by a name: the entry with this name or, if there is none, the entry of its
+ * family with the nearest style. SIZE_MAX: there is none. */
 size_t camber_font_index_find(const camber_font_index *index, const char *name);
-/* The entry of a family with the nearest style. SIZE_MAX: there is none. */
+/* Returns the entry of a family with the nearest style. SIZE_MAX: there is none. */
 size_t camber_font_index_find_family(const camber_font_index *index, uint64_t family_key,
                                      const camber_font_style *style);
 /* Opens the font of the entry with this number. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_font_index_open(camber_font_index *index, size_t number, camber_face **face);
 
-/* The system's fonts in the order in which it would try them for a style and a language, as patterns of entries. NULL:
- * there are none. */
+/* Returns the system's fonts in the order in which fontconfig would try them for a style and a language, as patterns of
+ * entries. NULL: there are none. */
 FcFontSet *camber_font_index_sort_system(const camber_font_index *index, const camber_font_style *style,
                                          const char *language);
-/* The entry of a pattern. SIZE_MAX: there is none. */
+/* Returns the entry with this pattern. SIZE_MAX: there is none. */
 size_t camber_font_index_find_pattern(const camber_font_index *index, const FcPattern *pattern);
 
 #endif

@@ -1,20 +1,20 @@
-/* Splits the names of fonts. Words of a style are cut off their ends until a word is none: "Open Sans Semibold Italic"
- * is the family "Open Sans" with the weight 600, italic. Names are compared by their letters and digits, since fonts
- * and styles differ in case, spaces and hyphens. */
+/* Splits the names of fonts. Words of a style are cut off the end of a name until its last word is not one: "Open Sans
+ * Semibold Italic" is the family "Open Sans" with the weight 600, italic. Names are compared by their letters and
+ * digits, since fonts and styles differ in case, spaces and hyphens. */
 #include "text/font_name.h"
 
 #include <ctype.h>
 #include <math.h>
 
-enum { NAME_SIZE = 128 }; /* letters and digits that count */
+enum { NAME_SIZE = 128 }; /* letters and digits of a name that are compared */
 
 typedef struct style_word {
     const char *word;
-    float weight, width; /* 0: it does not say */
+    float weight, width; /* 0: the word does not say */
     bool is_italic;
 } style_word;
 
-/* A word that ends with another stands before it. */
+/* A word that ends with another word is listed before it. */
 static const style_word words[] = {
     {"hairline", 100, 0, false},
     {"thin", 100, 0, false},
@@ -104,7 +104,7 @@ float camber_font_style_compare(const camber_font_style *a, const camber_font_st
 }
 
 const char *camber_font_name_package(const char *name) {
-    /* The beginnings of names; one that begins with another stands before it. */
+    /* The beginnings of names. A name that begins with another name is listed before it. */
     static const char *const packages[][2] = {
         {"notosanscjk", "fonts-noto-cjk"},   {"notoserifcjk", "fonts-noto-cjk"},
         {"notosansjp", "fonts-noto-cjk"},    {"notosanskr", "fonts-noto-cjk"},

@@ -1,6 +1,6 @@
 /* Sets of fonts. A stack of fonts keeps, for each code point that a text has asked for, the source that draws it, so
- * that a search goes through all fonts once for each character. The answer depends on the stack and the character only,
- * never on earlier texts: a map looks the same whatever is drawn before it. */
+ * that all fonts are searched only once for each character. The answer depends only on the stack and the character,
+ * never on earlier texts: a map looks the same whatever was drawn before it. */
 #include "text/fonts.h"
 
 #include "text/scripts.h"
@@ -96,7 +96,7 @@ void camber_fonts_destroy(camber_fonts *fonts) {
     camber_free(context, fonts);
 }
 
-/* Whether a warning has not been given yet. Without memory to note that, it is not given. */
+/* Whether the warning with this key has not been given yet. If there is no memory to remember it, it is not given. */
 static bool is_news(camber_fonts *fonts, uint64_t key) {
     for (size_t i = 0; i < fonts->told_count; i++)
         if (fonts->told[i] == key)
@@ -122,7 +122,7 @@ static camber_status add_source(camber_fonts *fonts, const camber_glyph_source *
     return CAMBER_OK;
 }
 
-/* Gives the source of an entry; CAMBER_NO_SOURCE if it is broken. */
+/* Finds the source of an entry; CAMBER_NO_SOURCE if the font is broken. */
 static camber_status open_entry(camber_fonts *fonts, size_t entry, uint32_t *source) {
     camber_face *face = NULL;
     *source = CAMBER_NO_SOURCE;
@@ -143,7 +143,7 @@ static camber_status open_entry(camber_fonts *fonts, size_t entry, uint32_t *sou
 static camber_status fill_index(camber_fonts *fonts) {
     if (fonts->is_filled)
         return CAMBER_OK;
-    camber_font_index_free(&fonts->index); /* of an attempt that had no memory */
+    camber_font_index_free(&fonts->index); /* left over from an attempt that ran out of memory */
     camber_status status = camber_font_index_fill(&fonts->index, (const char *const *)fonts->folders,
                                                   fonts->folder_count, fonts->has_system);
     if (status)
@@ -177,12 +177,14 @@ camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint
 
 /* ---- Stacks ---- */
 
-/* The specification's fonts for styles that name none. Nobody chose them, so nobody misses them. */
+/* Whether it is one of the specification's fonts for styles that name none. Nobody chose these, so nobody misses them.
+ */
 static bool is_default(const char *name) {
     return strcmp(name, "Open Sans Regular") == 0 || strcmp(name, "Arial Unicode MS Regular") == 0;
 }
 
-/* Warns of a font that is missing. The caller's ranges have what a style draws, so that they need no fonts. */
+/* Warns of a missing font. If the caller gives ranges of glyphs, these have everything that a style draws, and no font
+ * is needed. */
 static void tell_missing_font(camber_fonts *fonts, const camber_font_stack *stack, const char *name) {
     const char *package = camber_font_name_package(name);
     if (!is_news(fonts, camber_font_name_key(name, "?")))
@@ -218,7 +220,7 @@ static camber_status resolve(camber_fonts *fonts, camber_font_stack *stack) {
     return status;
 }
 
-/* Gives the shipped font of the stack's style. */
+/* Finds the shipped font with the stack's style. */
 static camber_status find_shipped(camber_fonts *fonts, const camber_font_stack *stack, uint32_t *source) {
     size_t best = SIZE_MAX;
     float least = 0.0f;
@@ -314,7 +316,7 @@ camber_status camber_fonts_find_stack(camber_fonts *fonts, const char *const *na
 
 /* ---- The source of a character ---- */
 
-/* Gives the font of the folders that has a character, and whose style is the nearest. */
+/* Finds the font in the folders that has the character and the nearest style. */
 static camber_status find_in_folders(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code,
                                      uint32_t *source) {
     float least = INFINITY;
@@ -335,7 +337,7 @@ static camber_status find_in_folders(camber_fonts *fonts, const camber_font_stac
     return CAMBER_OK;
 }
 
-/* Gives Noto Sans of a character's script, which goes well with the shipped font. */
+/* Finds Noto Sans for the character's script, which goes well with the shipped font. */
 static camber_status find_by_script(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code,
                                     uint32_t *source) {
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
@@ -371,12 +373,12 @@ static camber_status find_in_system(camber_fonts *fonts, camber_font_stack *stac
     return CAMBER_OK;
 }
 
-/* Emoji and other pictographs: the box of a missing one is not drawn. */
+/* Whether it is an emoji or another pictograph. If one is missing, no box is drawn for it. */
 static bool is_pictograph(uint32_t code) {
     return (code >= 0x1f000 && code <= 0x1faff) || (code >= 0x2600 && code <= 0x27bf);
 }
 
-/* A character that no font has is drawn as the box of the stack's first font. */
+/* Finds the source for a character that no font has: it is drawn as the box of the stack's first font. */
 static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
     const bool is_left_out = is_pictograph(code);
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
@@ -396,7 +398,7 @@ static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stac
     return CAMBER_OK;
 }
 
-/* Goes through all fonts. */
+/* Searches all fonts. */
 static camber_status find_source_of(camber_fonts *fonts, camber_font_stack *stack, uint32_t code, uint32_t *source) {
     *source = CAMBER_NO_SOURCE;
     if (stack->ranges_source != CAMBER_NO_SOURCE) {
@@ -428,7 +430,7 @@ static camber_status find_source_of(camber_fonts *fonts, camber_font_stack *stac
     return status;
 }
 
-/* Whether a source has all characters of a cluster, each or combined with the first. */
+/* Whether a source has all characters of a cluster, on their own or combined with the first one. */
 static bool has_all(const camber_glyph_source *source, const uint32_t *codes, size_t count) {
     hb_unicode_funcs_t *unicode = hb_unicode_funcs_get_default();
     uint32_t composed = codes[0];
@@ -448,7 +450,7 @@ camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, cons
     const uint32_t known = camber_number_map_get(&of->sources_of, codes[0]);
     camber_status status = CAMBER_OK;
     if (known)
-        *source = known - 2; /* 1 stands for none */
+        *source = known - 2; /* 1 means that no source draws it */
     if (!known) {
         status = find_source_of(fonts, of, codes[0], source);
         if (!status && !camber_number_map_set(fonts->context, &of->sources_of, codes[0], *source + 2))
@@ -492,7 +494,8 @@ camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, floa
                                        camber_outline *outline) {
     int exponent;
     assert(glyph < fonts->glyph_count);
-    /* One outline serves all tolerances between two powers of 2; that of ranges has no curves. */
+    /* One outline serves all tolerances between two powers of 2. Outlines from ranges have no curves, so one serves
+     * all. */
     frexpf(tolerance_em > 0.0f ? fminf(fmaxf(tolerance_em, 0x1p-20f), 1.0f) : 1.0f / 256.0f, &exponent);
     exponent--;
     if (fonts->sources[fonts->glyphs[glyph].source].ranges)

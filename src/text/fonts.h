@@ -1,7 +1,7 @@
-/* A set of fonts: what draws each character of a stack of fonts, and the numbers of glyphs that texts have.
+/* A set of fonts: finds what draws each character of a stack of fonts, and numbers the glyphs for texts.
  *
  * A character is drawn by the first of these that has it: the caller's ranges of glyphs; the fonts of its stack; the
- * fonts that camber ships, so that maps are alike on all machines; Noto Sans of its script; fonts of the folders; the
+ * fonts that camber ships, so that maps are alike on all machines; Noto Sans for its script; fonts in the folders; the
  * system's fonts, in the order in which fontconfig tries them. */
 #ifndef CAMBER_TEXT_FONTS_H
 #define CAMBER_TEXT_FONTS_H
@@ -17,13 +17,13 @@
 typedef struct camber_glyph_source {
     camber_face *face;
     camber_glyph_ranges *ranges;
-    const char *name;         /* in messages */
+    const char *name;         /* for messages */
     camber_number_map glyphs; /* a glyph's number in the font, or its code point -> its number in the set + 1 */
 } camber_glyph_source;
 
 /* The fonts that a run names. */
 typedef struct camber_font_stack {
-    uint64_t key; /* of its names and language */
+    uint64_t key; /* a hash of its names and language */
     char **names;
     size_t name_count;
     char *language; /* NULL: none */
@@ -50,7 +50,7 @@ struct camber_made_outline {
 
 typedef struct camber_font_glyph {
     uint32_t source;
-    uint32_t number; /* in the face; of ranges, the code point */
+    uint32_t number; /* its number in the face, or in ranges its code point */
     camber_made_outline *outlines;
 } camber_font_glyph;
 
@@ -62,27 +62,27 @@ struct camber_fonts {
     camber_glyph_range_fn *read;
     void *read_user;
     camber_font_index index; /* filled when a text needs a font */
-    uint32_t *entry_sources; /* of each entry: its source + 1, or 0 */
+    uint32_t *entry_sources; /* by entry: its source + 1, or 0 */
     camber_glyph_source *sources;
     size_t source_count, source_capacity;
     camber_font_stack *stacks;
     size_t stack_count, stack_capacity;
     camber_font_glyph *glyphs;
     size_t glyph_count, glyph_capacity;
-    uint64_t *told; /* hashes of the names and scripts that a warning has told */
+    uint64_t *told; /* hashes of the names and scripts that a warning has named */
     size_t told_count, told_capacity;
     camber_shaping shaping;
 };
 
-/* Gives the stack of a run. The index stays valid, pointers to stacks do not. */
+/* Finds the stack of a run. Its index stays valid, but pointers to stacks do not. */
 camber_status camber_fonts_find_stack(camber_fonts *fonts, const char *const *names, size_t name_count,
                                       const char *language, uint32_t *stack);
-/* Gives the source of a character and the marks on it: the one that has them all if there is one, else that of the
- * first. CAMBER_NO_SOURCE: nothing is to be drawn. */
+/* Finds the source for a character and the marks on it: a source that has them all or, if there is none, the source of
+ * the character. CAMBER_NO_SOURCE: nothing is drawn. */
 camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, const uint32_t *codes, size_t count,
                                        uint32_t *source);
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code);
-/* Gives the number of a glyph in the set. */
+/* Finds the number of a glyph in the set. */
 camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint32_t number, uint32_t *glyph);
 
 #endif

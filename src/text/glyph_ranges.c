@@ -1,6 +1,6 @@
-/* Reads ranges of glyphs when a text asks for a character in them. Messages stay as protobuf unpacked them; a glyph's
- * bitmap becomes rings when its outline is wanted. Glyphs outside of their range, metrics beyond
- * MOST_METRIC_PX and bitmaps of another size than they say are left out. */
+/* Reads ranges of glyphs when a text asks for a character in them. Messages are kept as protobuf unpacked them; a
+ * glyph's bitmap becomes rings when its outline is needed. Glyphs outside their range, glyphs with metrics beyond
+ * MOST_METRIC_PX, and bitmaps that do not have the size that they claim are left out. */
 #include "text/glyph_ranges.h"
 
 #include "text/contours.h"
@@ -8,10 +8,10 @@
 
 #include <glyphs.pb-c.h>
 
-static const uint32_t MOST_BITMAP_PX = 256; /* wide or high */
+static const uint32_t MOST_BITMAP_PX = 256; /* in width and in height */
 static const uint32_t MOST_METRIC_PX = 4096;
 
-/* protobuf's memory. */
+/* The memory that protobuf allocates from. */
 typedef struct message_memory {
     camber_context *context;
     bool is_exhausted;
@@ -35,7 +35,7 @@ static void free_message(camber_context *context, Camber__Glyphs__Range *range) 
         camber__glyphs__range__free_unpacked(range, &allocator);
 }
 
-/* Where the baseline is: below the letter H, which stands on it. */
+/* Finds the baseline: it is the bottom of the letter H. */
 static float find_ascender(camber_glyph_ranges *ranges) {
     static const char letters[] = "HEIx";
     for (const char *letter = letters; *letter; letter++) {
@@ -81,7 +81,7 @@ void camber_glyph_ranges_close(camber_glyph_ranges *ranges) {
     camber_free(ranges->context, ranges);
 }
 
-/* Whether a glyph can be used; a bitmap that does not fit its size is no bitmap. */
+/* Whether a glyph can be used. A bitmap that does not have the glyph's size is ignored. */
 static bool check_glyph(const Camber__Glyphs__Glyph *glyph, uint32_t first, camber_range_glyph *checked) {
     const int32_t most = (int32_t)MOST_METRIC_PX;
     if (!glyph->has_id || glyph->id < first || glyph->id - first > 255 || glyph->advance > MOST_METRIC_PX ||
@@ -98,7 +98,7 @@ static bool check_glyph(const Camber__Glyphs__Glyph *glyph, uint32_t first, camb
     return true;
 }
 
-/* Notes the glyphs of a range; of two glyphs of a code point, the first counts. */
+/* Records the glyphs of a range. If two glyphs have the same code point, the first is used. */
 static bool note_glyphs(camber_glyph_ranges *ranges, const Camber__Glyphs__Range *range, uint32_t first) {
     for (size_t i = 0; i < range->n_stacks; i++)
         for (size_t j = 0; j < range->stacks[i]->n_glyphs; j++) {
@@ -116,7 +116,7 @@ static bool note_glyphs(camber_glyph_ranges *ranges, const Camber__Glyphs__Range
     return true;
 }
 
-/* Sets *range to NULL if the bytes are no range. */
+/* Sets *range to NULL if the bytes are not a range. */
 static camber_status unpack(camber_context *context, const uint8_t *bytes, size_t size_bytes,
                             Camber__Glyphs__Range **range) {
     message_memory memory = {.context = context};
@@ -187,7 +187,7 @@ void camber_glyph_ranges_draw(const camber_glyph_ranges *ranges, uint32_t code, 
         maker->status = CAMBER_ERROR_MEMORY;
         return;
     }
-    /* Values are those of the centres of pixels. */
+    /* Each value belongs to the centre of a pixel. */
     const camber_contour_source source = {
         .values = values,
         .width = CAMBER_DISTANCE_STEPS * ((uint32_t)width - 1) + 1,

@@ -1,4 +1,5 @@
-/* Glyphs of a style's `glyphs`: signed distances in ranges of 256 code points, which a function of the caller gives. */
+/* The glyphs of a style's `glyphs`: signed distances in ranges of 256 code points, which a function of the caller
+ * provides. */
 #ifndef CAMBER_TEXT_GLYPH_RANGES_H
 #define CAMBER_TEXT_GLYPH_RANGES_H
 
@@ -22,8 +23,8 @@ typedef struct camber_glyph_ranges {
     camber_context *context;
     camber_glyph_range_fn *read;
     void *user;
-    char *stack;             /* names of fonts, with commas */
-    camber_number_map asked; /* a range's number -> 1: it has been asked for */
+    char *stack;             /* names of fonts, separated by commas */
+    camber_number_map asked; /* a range's number -> 1 if it has been asked for */
     void **loaded;           /* protobuf's messages */
     size_t loaded_count, loaded_capacity;
     camber_number_map found; /* a code point -> its glyph's index in glyphs + 1 */
@@ -38,11 +39,11 @@ camber_status camber_glyph_ranges_open(camber_context *context, camber_glyph_ran
                                        const char *stack, camber_glyph_ranges **ranges);
 void camber_glyph_ranges_close(camber_glyph_ranges *ranges);
 
-/* Whether there is a glyph for a code point. If there is no memory, ranges->status says so from then on. */
+/* Whether there is a glyph for a code point. If memory runs out, ranges->status says so from then on. */
 bool camber_glyph_ranges_has(camber_glyph_ranges *ranges, uint32_t code);
-/* The advance of a glyph that there is. */
+/* Returns the advance of a glyph, which must exist. */
 float camber_glyph_ranges_advance_em(const camber_glyph_ranges *ranges, uint32_t code);
-/* Draws a glyph: the rings of its bitmap, from its origin on the baseline. */
+/* Draws a glyph: adds the rings of its bitmap, relative to its origin on the baseline. */
 void camber_glyph_ranges_draw(const camber_glyph_ranges *ranges, uint32_t code, camber_outline_maker *maker);
 
 #endif

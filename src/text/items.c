@@ -2,10 +2,10 @@
 #include "text/fonts.h"
 #include "text/scripts.h"
 
-/* HarfBuzz looks for the letter of each mark, and is quadratic in them: longer clusters and items are cut. */
+/* HarfBuzz searches for the letter of each mark, in time quadratic in the marks: longer clusters and items are cut. */
 enum { MOST_OF_CLUSTER = 32, MOST_OF_ITEM = 1 << 13 };
 
-/* The end of a cluster: a character with the marks on it. */
+/* Returns the end of a cluster: of a character with the marks on it. */
 static size_t find_cluster_end(const camber_shaping *shaping, size_t first) {
     size_t end = first + 1;
     while (end < shaping->count && shaping->codes[first] != '\n' && end - first < MOST_OF_CLUSTER &&
@@ -35,7 +35,8 @@ static camber_status choose_source(camber_fonts *fonts, size_t first, size_t end
     return status;
 }
 
-/* Characters of all scripts, such as spaces, are of the script before them, or at a text's beginning after them. */
+/* Gives characters that all scripts share, such as spaces, the script of the character before them or, at the beginning
+ * of a text, after them. */
 static void spread_scripts(camber_shaping *shaping) {
     hb_script_t script = HB_SCRIPT_COMMON;
     for (size_t i = 0; i < shaping->count && script == HB_SCRIPT_COMMON; i++) {
@@ -57,7 +58,7 @@ static bool is_same_item(const camber_character *a, const camber_character *b) {
            !a->is_image && !b->is_image && a->is_upright == b->is_upright && !b->begins_item;
 }
 
-/* The language of a text that has none: ideographs with kana are Japanese, and with hangul Korean. */
+/* Guesses the language of a text for which none is given: ideographs with kana are Japanese, with hangul Korean. */
 static const char *guess_language(const camber_shaping *shaping) {
     bool has_ideographs = false;
     for (size_t i = 0; i < shaping->count; i++) {

@@ -1,5 +1,6 @@
-/* Gives the glyphs of lines their places. Along a line, glyphs follow each other by their advances; across it, as in
- * MapLibre, the ems of a line's runs stand on each other's bottoms, 17/24 em above the middle of the line:
+/* Gives the glyphs of lines their positions. Along a line, each glyph is one advance after the previous one. Across it,
+ * as in MapLibre, the ems of a line's runs have the same bottom, and their top is 17/24 em above the middle of the
+ * line:
  *
  *     ---------------  top of the ems = middle - 17/24 em
  *      |   | --- |  |
@@ -7,14 +8,14 @@
  *      |   | --- |__|
  *     --------- baseline = top + ascender of the first font -------
  *
- * All of it is laid out as a horizontal line first: u along, v across. Vertical text is turned by 90 degrees clockwise
- * at the end, so that x = -v and y = u. */
+ * All text is laid out in horizontal lines first: u along a line, v across it. Vertical text is turned by 90 degrees
+ * clockwise at the end, so that x = -v and y = u. */
 #include "text/fonts.h"
 #include "text/scripts.h"
 
 #include <math.h>
 
-/* A line's part of an item. */
+/* Whether an item begins or ends at the character, or can be cut before it. */
 static bool is_at_boundary(const camber_shaping *shaping, const camber_text_item *item, uint32_t character) {
     if (character == item->first || character == item->end)
         return true;
@@ -24,8 +25,8 @@ static bool is_at_boundary(const camber_shaping *shaping, const camber_text_item
     return false;
 }
 
-/* Adds the part of an item between two characters to the line. If it can be cut there, it keeps its glyphs, else it is
- * shaped again. */
+/* Adds the part of an item between two characters to the line. If the item can be cut at both characters, the part
+ * keeps the item's glyphs; otherwise it is shaped again. */
 static camber_status add_piece(camber_fonts *fonts, const camber_text_desc *desc, const camber_text_item *item,
                                camber_line_break part) {
     camber_shaping *shaping = &fonts->shaping;
@@ -49,7 +50,7 @@ static camber_status add_piece(camber_fonts *fonts, const camber_text_desc *desc
     return CAMBER_OK;
 }
 
-/* Finds a line's pieces, in the order in which they stand. */
+/* Finds a line's pieces and the order in which they are drawn. */
 static camber_status find_pieces(camber_fonts *fonts, const camber_text_desc *desc, camber_line_break line,
                                  size_t *item) {
     camber_shaping *shaping = &fonts->shaping;
@@ -79,7 +80,7 @@ typedef struct layout {
     camber_text *text;
     size_t glyph_capacity;
     float spacing, ascender_em;
-    float scale, content_em; /* of the line: its largest scale, and the height of its highest run or image */
+    float scale, content_em; /* the line's largest scale, and the height of its highest run or image */
     float u, v;              /* v: the top of the line's ems */
 } layout;
 
@@ -87,7 +88,7 @@ static float get_align_share(camber_text_align align) {
     return align == CAMBER_ALIGN_TOP ? 0.0f : align == CAMBER_ALIGN_CENTER ? 0.5f : 1.0f;
 }
 
-/* The place of a run's baseline across the line; of an image, that of its upper side. */
+/* Returns where a run's baseline is across the line; for an image, where its top is. */
 static float get_across(const layout *l, const camber_text_run *run) {
     const float share = get_align_share(run->align);
     if (!run->text) {
@@ -125,7 +126,7 @@ static camber_status add_glyph(layout *l, const camber_text_item *piece, const c
         made.y = x;
         made.turned = true;
     } else if (l->desc->vertical) {
-        /* Its pen stands in the middle of the line. */
+        /* The pen of an upright glyph is in the middle of the line. */
         made.x = -(l->v + l->content_em - l->scale - CAMBER_LINE_TOP_EM * l->scale) + glyph->x * scale;
         made.y = l->u + glyph->y * scale;
     }
@@ -166,7 +167,8 @@ static camber_status add_line(layout *l, camber_line_break line, size_t *item, f
 
 /* ---- Anchors ---- */
 
-/* The shares of the box that are to the left of the anchor and above it. */
+/* Returns which fraction of the box's width is to the left of the anchor, and which fraction of its height is above it.
+ */
 static void get_anchor_shares(camber_text_anchor anchor, float *across, float *down) {
     static const float shares[][2] = {
         [CAMBER_ANCHOR_CENTER] = {0.5f, 0.5f},      [CAMBER_ANCHOR_LEFT] = {0.0f, 0.5f},
@@ -178,7 +180,7 @@ static void get_anchor_shares(camber_text_anchor anchor, float *across, float *d
     *down = shares[anchor][1];
 }
 
-/* The share of a line's free room that is before it. */
+/* Returns which fraction of a line's free space is before the line. */
 static float get_justify_share(const camber_text *text, camber_text_anchor anchor, camber_text_justify justify) {
     float across, down;
     get_anchor_shares(anchor, &across, &down);
@@ -190,7 +192,8 @@ static float get_justify_share(const camber_text *text, camber_text_anchor ancho
     }
 }
 
-/* Moves the lines, which begin at 0 along and whose block begins at 0 across. sign: 1, or -1 to move them back. */
+/* Moves the lines to their anchor. Before that, each line and the block of lines begin at 0. sign: 1, or -1 to move the
+ * lines back. */
 static void move(camber_text *text, camber_text_anchor anchor, camber_text_justify justify, float sign) {
     const float longest = text->vertical ? text->bottom - text->top : text->right - text->left;
     const float share = get_justify_share(text, anchor, justify);
@@ -223,7 +226,7 @@ void camber_text_place(camber_text *text, camber_text_anchor anchor, camber_text
 
 /* ---- Texts ---- */
 
-/* The ascender of the first run's font, for all runs. */
+/* Returns the ascender of the first run's font, which is used for all runs. */
 static float find_ascender(const camber_fonts *fonts, const camber_text_desc *desc) {
     for (size_t i = 0; i < desc->run_count; i++)
         if (desc->runs[i].text)
@@ -231,7 +234,7 @@ static float find_ascender(const camber_fonts *fonts, const camber_text_desc *de
     return 1.0f;
 }
 
-/* MapLibre's lines of one height have their ems in the middle of it; others begin at its top. */
+/* If all lines have the same height, MapLibre puts the ems in the middle of the line's height; otherwise at its top. */
 static void center_lines(camber_text *text, float line_height) {
     const float shift = line_height / 2.0f + CAMBER_LINE_TOP_EM;
     for (size_t i = 0; i < text->glyph_count; i++)

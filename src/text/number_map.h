@@ -1,5 +1,5 @@
-/* A map from numbers that are often close to each other, such as code points, to numbers: pages of 256, which are made
- * when they are written to. */
+/* A map from numbers that are often close to each other, such as code points, to numbers: it consists of pages of 256
+ * entries, and a page is made when it is first written to. */
 #ifndef CAMBER_TEXT_NUMBER_MAP_H
 #define CAMBER_TEXT_NUMBER_MAP_H
 

@@ -1,5 +1,6 @@
-/* Makes rings of what HarfBuzz draws: lines, and curves that are flattened into as many equal steps as the tolerance
- * needs. A curve whose second derivative is at most d is at most d / (8 n^2) away from the polyline of n steps. */
+/* Makes rings from what HarfBuzz draws: from lines, and from curves, which are flattened into as many equal steps as
+ * the tolerance needs. A curve whose second derivative is at most d is at most d / (8 n^2) away from the polyline of n
+ * steps. */
 #include "text/outline.h"
 
 #include <math.h>
@@ -55,7 +56,7 @@ void camber_outline_end_ring(camber_outline_maker *maker) {
     maker->point_count = first + count;
 }
 
-/* Twice the area of a ring; positive if it is clockwise as seen, since y goes down. */
+/* Returns twice the area of a ring; positive if it is clockwise as seen, because y points down. */
 static double get_area(const float *ring, size_t count) {
     double area = 0.0;
     for (size_t i = 0, j = count - 1; i < count; j = i++)
@@ -72,8 +73,8 @@ static void reverse(float *ring, size_t count) {
         }
 }
 
-/* PostScript's outer rings run the other way than TrueType's: all rings turn round if their areas add up to less
- * than 0. */
+/* In PostScript fonts, outer rings run in the opposite direction to those in TrueType fonts: if the areas add up to
+ * less than 0, all rings are reversed. */
 static void orient(camber_outline_maker *maker) {
     double area = 0.0;
     for (size_t i = 0; i < maker->ring_count; i++)
@@ -125,7 +126,7 @@ camber_status camber_outline_finish(camber_outline_maker *maker, camber_outline 
     return maker->status;
 }
 
-/* ---- HarfBuzz's calls ---- */
+/* ---- Functions that HarfBuzz calls ---- */
 
 static void move_to(hb_draw_funcs_t *calls, void *user, hb_draw_state_t *state, float x, float y, void *unused) {
     camber_outline_maker *maker = user;
@@ -140,7 +141,7 @@ static void line_to(hb_draw_funcs_t *calls, void *user, hb_draw_state_t *state, 
     camber_outline_add_point(maker, x * maker->scale, -y * maker->scale);
 }
 
-/* How many steps a curve needs whose second derivative is at most `second`, in the font's units. */
+/* Returns how many steps a curve needs if its second derivative is at most `second`, in the font's units. */
 static unsigned count_steps(const camber_outline_maker *maker, float second) {
     const float steps = ceilf(sqrtf(second * maker->scale / (8.0f * maker->tolerance_em)));
     return steps >= 1.0f ? steps <= 65536.0f ? (unsigned)steps : 65536 : 1;

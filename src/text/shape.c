@@ -1,4 +1,4 @@
-/* Shapes items: with HarfBuzz if a font draws them; the glyphs of ranges stand for one character each. */
+/* Shapes items. HarfBuzz shapes them if a font draws them. A glyph of a range draws one character. */
 #include "text/fonts.h"
 #include "text/scripts.h"
 
@@ -24,8 +24,8 @@ static bool has_forms(const camber_glyph_source *source, const uint32_t *codes, 
     return true;
 }
 
-/* Replaces Arabic letters by the forms in which they join their neighbours: with ligatures, if there are glyphs for
- * them. */
+/* Replaces Arabic letters by the forms in which they join their neighbours, with ligatures if there are glyphs for
+ * these. */
 static bool join_letters(camber_fonts *fonts, const camber_text_item *item, uint32_t *forms) {
     camber_context *context = fonts->context;
     const uint32_t *codes = fonts->shaping.codes + item->first;
@@ -51,7 +51,7 @@ static bool join_letters(camber_fonts *fonts, const camber_text_item *item, uint
     return has_memory;
 }
 
-/* The code point that draws a character. */
+/* Returns the code point whose glyph draws a character. */
 static uint32_t choose_form(const camber_glyph_source *source, uint32_t code, uint32_t form, bool is_reversed,
                             bool is_upright) {
     FriBidiChar mirrored;
@@ -80,7 +80,7 @@ static camber_status add_range_glyph(camber_fonts *fonts, const camber_text_item
     glyph->advance = camber_glyph_ranges_advance_em(source->ranges, chosen);
     glyph->is_turned = item->is_upright && chosen == code && camber_turns_without_form(code);
     if (item->is_upright && !glyph->is_turned) {
-        /* In the middle of a square of an em. */
+        /* The glyph is in the middle of a square with sides of one em. */
         glyph->x = -0.5f * glyph->advance;
         glyph->y = 0.5f + source->ranges->ascender_em + CAMBER_LINE_TOP_EM;
         glyph->advance = 1.0f;
@@ -123,7 +123,7 @@ static void fill_buffer(camber_shaping *shaping, const camber_text_desc *desc, c
         hb_buffer_set_language(shaping->buffer, hb_language_from_string(desc->language, -1));
 }
 
-/* In vertical lines, a bracket that the font has no vertical form of is turned. */
+/* In vertical lines, turns a bracket if the font has no vertical form for it. */
 static void turn_glyph(const camber_shaping *shaping, const camber_face *face, camber_item_glyph *glyph) {
     const uint32_t code = shaping->codes[glyph->character];
     hb_codepoint_t nominal;

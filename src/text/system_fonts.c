@@ -1,5 +1,5 @@
-/* Fonts that fontconfig knows. Its configuration is the process's own, which it sets up once and locks itself; camber
- * only reads it. */
+/* Fonts that fontconfig knows. Fontconfig's configuration belongs to the process: fontconfig sets it up once and does
+ * its own locking, and camber only reads it. */
 #include "text/font_index.h"
 
 static const char *get_string(const FcPattern *pattern, const char *object, int number) {
@@ -12,7 +12,8 @@ static int get_number(const FcPattern *pattern, const char *object, int without)
     return FcPatternGetInteger(pattern, object, 0, &number) == FcResultMatch ? number : without;
 }
 
-/* Whether camber can draw it: TrueType or OpenType with outlines, and not a variable font without a style. */
+/* Whether camber can draw the font: it must be TrueType or OpenType with outlines, and not a variable font without a
+ * style. */
 static bool is_usable(const FcPattern *pattern) {
     FcBool is_outline = FcFalse, is_variable = FcFalse, is_colored = FcFalse;
     const char *format = get_string(pattern, FC_FONTFORMAT, 0);

@@ -10,7 +10,7 @@ void camber_text_destroy(camber_text *text) {
     camber_free(context, text);
 }
 
-/* Whether all ranges that the text asked for could be loaded. If not, the next text tries again. */
+/* Checks that all ranges that the text asked for could be loaded. If not, the next text tries again. */
 static camber_status check_ranges(camber_fonts *fonts) {
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < fonts->source_count; i++) {

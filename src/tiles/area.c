@@ -77,7 +77,7 @@ static bool is_listed(const camber_tiles_area *area, int zoom, uint32_t column, 
 
 /* ---- Regions ---- */
 
-/* Whether the segment meets the box: no separating axis of the two exists. */
+/* Whether the segment meets the box, that is, whether no axis separates them. */
 static bool meets(camber_box box, const double *a, const double *b) {
     if (fmax(a[0], b[0]) < box.x0 || fmin(a[0], b[0]) > box.x1 || fmax(a[1], b[1]) < box.y0 ||
         fmin(a[1], b[1]) > box.y1)
@@ -184,7 +184,8 @@ size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoo
     area->tile_count = 0;
     for (size_t i = 0; i < count; i++) {
         const int zoom = camber_archive_zoom(area->tiles[i]);
-        /* Bounds extend a thousandth of a tile into each tile, and archives round them to 10^-7 degrees. */
+        /* An archive's bounds reach a thousandth of a tile or more into each of its tiles. At high zooms this may be
+         * less than the error of archives, which round bounds to 10^-7 degrees. */
         const double tiles = exp2(zoom), slack = zoom > 21 ? 1e-9 : 0.0;
         const camber_box wide = {box.x0 - slack, box.y0 - slack, box.x1 + slack, box.y1 + slack};
         uint32_t column, row;
@@ -193,7 +194,7 @@ size_t camber_tiles_area_keep(camber_tiles_area *area, int min_zoom, int max_zoo
             row + 1.0 > wide.y0 * tiles && row < wide.y1 * tiles)
             area->tiles[area->tile_count++] = area->tiles[i];
     }
-    if (area->tile_count) { /* numbers ascend with the zoom */
+    if (area->tile_count) { /* tile numbers ascend with the zoom */
         area->min_zoom = camber_archive_zoom(area->tiles[0]);
         area->max_zoom = camber_archive_zoom(area->tiles[area->tile_count - 1]);
     }

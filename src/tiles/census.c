@@ -1,10 +1,10 @@
 /* Takes the census of a zoom: finds the tiles that lines touch and areas cover, before anything is drawn.
  *
- * Input: features and a zoom's plan. Output: metatiles along the Hilbert curve, each with its tiles that a line comes
- * near, and with the polylines to draw. Main idea: walk the points that the zoom draws, in tiles as units, and mark the
- * tiles within reach of each segment's stroke. Tiles inside an area's ring are marked too. The polylines are divided
- * into shares, which threads take one after another. Each share has a table of metatiles. The tables are merged in
- * order, so the result does not depend on the threads.
+ * Input: features and a zoom's plan. Output: metatiles along the Hilbert curve, each with the tiles that a line comes
+ * near and the polylines to draw. Main idea: walk the points that the zoom draws, with tiles as the unit of length, and
+ * mark the tiles within reach of each segment's stroke. Tiles inside an area's ring are marked too. The polylines are
+ * divided into shares, which threads take one after another. Each share has a table of metatiles. The tables are merged
+ * in order, so the result does not depend on the threads.
  *
  *     +-----+-----+-----+
  *     |  x  |  x  |     |      x: touched by the segment, or within its reach
@@ -34,8 +34,8 @@ typedef struct found_metatile {
     uint64_t tiles, points;
 } found_metatile;
 
-/* A crossing of a ring and the horizontal line through the middle of a row of tiles, at x in tiles; downwards 1,
- * upwards -1. */
+/* Where a ring crosses the horizontal line through the middle of a row of tiles: at x, in tiles; 1 if the ring goes
+ * down, -1 if it goes up. */
 typedef struct crossing {
     int64_t row;
     double x;
@@ -325,7 +325,7 @@ static camber_status list_metatiles(camber_census *census, share *shares, size_t
     return CAMBER_OK;
 }
 
-/* Merges the tables of the shares, and lists the polylines of each metatile, those of the first share first. */
+/* Merges the tables of the shares, and lists the polylines of each metatile, beginning with the first share's. */
 static camber_status unite(camber_census *census, share *shares, size_t count) {
     numbered_metatile *all = NULL;
     size_t all_count = 0, pairs = 0;

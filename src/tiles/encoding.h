@@ -48,8 +48,8 @@ void camber_encode_queue_destroy(camber_encode_queue *queue);
 camber_encode_job *camber_encode_queue_get_free(camber_encode_queue *queue);
 /* Queues the job that camber_encode_queue_get_free returned. */
 void camber_encode_queue_put(camber_encode_queue *queue, camber_encode_job *job);
-/* Returns the oldest job once it is encoded. Returns NULL if the queue is empty or, without waits, if the job is not
- * ready. If the job failed, the failure has been logged. */
+/* Returns the oldest job once it is encoded. Returns NULL if the queue is empty, or if waits is false and the job is
+ * not ready. If the job failed, the failure has been logged. */
 camber_encode_job *camber_encode_queue_take(camber_encode_queue *queue, bool waits);
 /* Returns a taken job to the queue, to be used again. */
 void camber_encode_queue_release(camber_encode_queue *queue, camber_encode_job *job);

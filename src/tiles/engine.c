@@ -13,11 +13,11 @@
 enum {
     PICTURE_PX = 2048,
     LEAST_TILE_PX = 64,
-    /* The census of a higher zoom would grow without limit with the tiles that lines pass through. Tiles on demand use
-     * a census in tiles of this zoom instead, which contain few lines. */
+    /* At higher zooms the census would grow without limit, because lines pass through more and more tiles. Tiles on
+     * demand use a census in tiles of this zoom instead; each of these contains few lines. */
     FINEST_CENSUS_ZOOM = 16,
 };
-/* A mesh with a network of more points than this is freed at once, and not kept until the next one is made. */
+/* A mesh whose network has more points than this is freed at once, instead of being kept until the next one is made. */
 static const size_t MANY_POINTS = (size_t)1 << 20;
 
 /* ---- The engine ---- */

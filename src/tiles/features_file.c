@@ -1,9 +1,9 @@
 /* Saves a set of features to a file, and loads it again.
  *
- * Input: a set whose lines are merged and weighed. Output: a file, from which the same set can be loaded, or the part
- * of it that touches a region. Loading takes a tenth of the time that reading the original files takes. The file serves
- * the machines that draw the parts of one run, and is not needed after the run. Numbers are in the machine's byte
- * order; a file with another byte order is refused.
+ * Input: a set whose lines are merged and whose points have their importance. Output: a file, from which the same set
+ * can be loaded, or the part of it that touches a region. Loading takes a tenth of the time that reading the original
+ * files takes. The machines that draw the parts of one run read the file; after the run it is not needed. Numbers are
+ * in the machine's byte order; a file with another byte order is refused.
  *
  *     header | JSON: layers, classes | numbers by feature | numbers by polyline | blocks of points | checksum
  *
@@ -63,8 +63,8 @@ static json_t *value_json(const camber_value *value) {
     }
 }
 
-/* Appends a value in an array of its own, or null if there is no value, so that a null value in the file differs from a
- * missing one. */
+/* Appends an array that contains only the value, or null if there is no value. So a null value in the file differs from
+ * a missing one. */
 static bool append_value(json_t *to, const camber_value *value) {
     if (value->type == CAMBER_VALUE_NULL && !value->boolean)
         return json_array_append_new(to, json_null()) == 0;
@@ -387,7 +387,7 @@ static camber_status get_blocks(loading *l, size_t polylines) {
     return status;
 }
 
-/* Allocates memory for the polylines that will be taken; at most all of them. */
+/* Allocates memory for the polylines that will be taken, which may be all of them. */
 static camber_status make_room(camber_features *f, size_t polylines, bool has_progress) {
     if (!(f->polyline_feature = camber_alloc(f->context, polylines + 1, sizeof *f->polyline_feature)) ||
         !(f->feature_counts = camber_alloc(f->context, polylines + 1, sizeof *f->feature_counts)) ||

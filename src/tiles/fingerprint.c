@@ -31,7 +31,7 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
         for (uint32_t i = 0; i < value->count; i++)
             hash = hash_value(hash, value->items + i);
         return hash;
-    case CAMBER_VALUE_FORMATTED: return hash; /* never of a feature */
+    case CAMBER_VALUE_FORMATTED: return hash; /* features have no such values */
     case CAMBER_VALUE_OBJECT:
         for (uint32_t i = 0; i < value->count; i++)
             hash = hash_value(hash_text(hash, value->members[i].key), &value->members[i].value);

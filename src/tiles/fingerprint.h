@@ -13,7 +13,7 @@ uint64_t camber_features_hash(const camber_features *features, camber_box *box);
 void camber_fingerprint_write(const camber_tiles_engine *engine, const camber_tiles_draw_desc *desc,
                               const camber_tiles_area *area, uint64_t input, char text[CAMBER_FINGERPRINT_SIZE]);
 /* Writes the fingerprint that the archive with the fingerprint `there` gets after a run with the fingerprint `now` has
- * replaced some of its tiles: its own with the new input. Returns false if the two differ in more than the input and
+ * replaced some of its tiles: `there` with the new input. Returns false if the two differ in more than the input and
  * the area; names then lists the differences. */
 bool camber_fingerprint_renew(const char *there, const char *now, char text[CAMBER_FINGERPRINT_SIZE], char *names,
                               size_t names_size);

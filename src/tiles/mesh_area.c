@@ -1,8 +1,8 @@
 /* Triangulates the areas of mesh tiles.
  *
  * Input: the rings that a style fills in a picture of tiles. Output: for each tile, corners and triangles, grouped by
- * set. Main idea: consecutive rings with the same row are filled in one go, as kernels fill them as one path. They are
- * clipped to the tile's square, extended by the row's reach. */
+ * set. Main idea: consecutive rings with the same row are filled together, because kernels also fill them as one path.
+ * They are clipped to the tile's square, extended by the row's reach. */
 #include "tiles/mesh_area.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ camber_status camber_mesh_plan_find_glu(const camber_mesh_plan *plan) {
     return !fills || camber_triangulator_is_available() ? CAMBER_OK : camber_triangulator_fail_missing(plan->context);
 }
 
-/* Appends the new triangles to those of the tile. */
+/* Appends the new triangles to the tile's triangles. */
 static camber_status take_triangles(camber_mesh_tile *tile, const camber_triangles *made, uint16_t row) {
     const uint32_t first = (uint32_t)tile->corner_count;
     if (!camber_grow(tile->context, &tile->corners, &tile->corner_capacity, tile->corner_count + made->corner_count,
@@ -133,7 +133,7 @@ camber_status camber_mesh_tile_fill(const camber_mesh_picture *picture, uint32_t
         const uint32_t row = rows[picture->rings[i].pair];
         bool near = false;
         window.half_width = window.half_height =
-            (float)(0.5 * px + (double)picture->plan->reach_px[row]); /* 1 px, and the translation */
+            (float)(0.5 * px + (double)picture->plan->reach_px[row]); /* includes 1 px and the translation */
         for (end = i; end < picture->ring_count && rows[picture->rings[end].pair] == row; end++)
             near = near || touches(picture->rings + end, &window);
         status = near ? fill_row(picture, i, end, &window, tile) : CAMBER_OK;

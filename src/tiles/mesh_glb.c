@@ -3,7 +3,7 @@
  * Input: the records and triangles of a tile. Output: a file with up to two primitives. Lines are one triangle strip
  * with two vertices per record: the line's left and right edge at the tile's zoom, for plain viewers. Both vertices
  * also contain the record itself, for shaders. A sentinel's vertices coincide with one vertex of the line before it and
- * one of the line after it, so that the triangles there have no area. Areas are indexed triangles. */
+ * one of the line after it, so that the triangles between the two lines have no area. Areas are indexed triangles. */
 #include "tiles/mesh_tile.h"
 
 #include <jansson.h>
@@ -60,7 +60,7 @@ typedef struct encoder {
 
 /* ---- The outline, for plain viewers ---- */
 
-/* How plain viewers draw a row: like the topmost layer that draws it, at the first sample at which it does. */
+/* How plain viewers draw a row: like the topmost layer that draws it, at the first sample that it draws. */
 typedef struct look {
     double half_width, offset; /* eighths of a px */
     int height;
@@ -126,7 +126,7 @@ static void place(const encoder *e, size_t i, const look *l, vertex *pair) {
     const double cosine = a[0] * b[0] + a[1] * b[1], by = 1.0 / fmax(1.0 + cosine, 0.25);
     const double across[2] = {-(a[1] + b[1]) * by, (a[0] + b[0]) * by};
     for (int side = 0; side < 2; side++) {
-        const double away = (side ? 1.0 : -1.0) * l->half_width + l->offset; /* y goes down: left, then right */
+        const double away = (side ? 1.0 : -1.0) * l->half_width + l->offset; /* y points down: left, then right */
         pair[side].position[0] = to_steps(x + across[0] * away);
         pair[side].position[1] = (int16_t)l->height;
         pair[side].position[2] = to_steps(y + across[1] * away);
@@ -265,7 +265,7 @@ static void append(encoder *e, json_t *array, json_t *value) {
     e->ok &= json_array_append_new(array, value) == 0;
 }
 
-/* Rounds a number to 1/1000, and px above 10 to 1/100, and so on: four digits are more than a picture can show. */
+/* Rounds numbers below 10 to 1/1000, below 100 to 1/100, and so on: four digits are more than a picture can show. */
 static json_t *number(double value) {
     double step = 1e-3;
     for (double most = 10.0; fabs(value) >= most && most < 1e4; most *= 10.0)
@@ -274,8 +274,8 @@ static json_t *number(double value) {
     return rounded == floor(rounded) ? json_integer((json_int_t)rounded) : json_real(rounded);
 }
 
-/* Stores a list of samples; a single value if all are the same; nothing if that value is the default. Takes ownership
- * of both. */
+/* Stores a list of samples, or a single value if all samples are equal, or nothing if that value is the default. Takes
+ * ownership of samples and normal. */
 static void set_samples(encoder *e, json_t *object, const char *key, json_t *samples, json_t *normal) {
     bool same = true;
     e->ok &= normal != NULL;

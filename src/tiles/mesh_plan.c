@@ -15,7 +15,7 @@ static const camber_plan *plan_at(const camber_mesh_plan *plan, size_t sample) {
 
 /* Returns the row in another sample's set for the class and dot of a pair of the zoom's plan; CAMBER_NO_ROW if that set
  * does not draw them. A style has the same number of dots at all zooms, unless a layer appears between two samples: the
- * last dot is the fill's. */
+ * last dot belongs to the fill. */
 static uint32_t row_of(const camber_mesh_plan *mesh, const camber_plan *plan, size_t set, uint32_t pair) {
     const uint32_t class = mesh->pair_classes[pair];
     const size_t above = mesh->zoom->plan.dot_count - mesh->zoom->plan.pair_dots[pair];
@@ -91,9 +91,9 @@ float camber_mesh_plan_offset(const camber_mesh_plan *plan, size_t layer, uint32
     return offset_of(plan, layer, plan->row_pairs[row], sample);
 }
 
-/* Widens the stroke of a pair to its widest in any sample, in px of zoom z, and returns its reach; negative if it is
- * not drawn. The reach beyond the stroke itself comes from an offset or a translation, by which the camera extends its
- * window. */
+/* Sets the width of a pair's stroke to its largest width at any sample, in px of zoom z, and returns its reach;
+ * negative if it is not drawn. An offset or a translation makes the reach larger than the stroke's own; the camera
+ * extends its window by the difference. */
 static float widen(camber_mesh_plan *plan, const camber_plan_set *set, uint32_t pair) {
     camber_stroke *stroke = plan->zoom->strokes + pair;
     float reach = -1.0f;

@@ -1,6 +1,6 @@
 /* The plan of mesh tiles: how the style draws lines from one whole zoom up to the next.
  *
- * A mesh tile is drawn at all zooms from its own, z, to just below z + 1. Its geometry is that of the plan just below z
+ * A mesh tile is drawn at all zooms from its own, z, to just below z + 1. Its geometry comes from the plan just below z
  * + 1. Its paints are sampled at z, z + 1/4, z + 1/2, z + 3/4 and just below z + 1. */
 #ifndef CAMBER_TILES_MESH_PLAN_H
 #define CAMBER_TILES_MESH_PLAN_H

@@ -2,8 +2,8 @@
  *
  * Input: the points of a mesh, as the device tessellated them for a picture of tiles. Output: for each tile, the points
  * of the segments within reach of it, in whole units of the tile. Main idea: a segment that touches the tile, extended
- * by the reach of its row, is kept as it is; all others are dropped. So a tile clipped to its square shows the same as
- * the picture does there. A segment is cut only where it leaves the range of 16 bits.
+ * by the reach of its row, is kept as it is; all others are dropped. So a tile that is clipped to its square looks like
+ * this part of the picture. A segment is cut only where it leaves the range of 16 bits.
  *
  *     +-----------------------------+  range of 16 bits: half a tile beyond each side
  *     |      .-----------------.    |
@@ -187,7 +187,7 @@ static void put(cutter *c, cut_point at, uint16_t row, unsigned flags) {
     tile->segments += !(flags & (CAMBER_MESH_SENTINEL | CAMBER_MESH_FIRST));
 }
 
-/* Puts a sentinel before a line, unless the last sentinel of the line before can be shared. */
+/* Adds a sentinel before a line, unless the line can share the last sentinel of the previous line. */
 static void put_sentinel_before(cutter *c, cut_point first, uint16_t row, bool is_ring) {
     if (!c->tile->record_count || (is_ring && c->sentinel_is_used))
         put(c, first, row, CAMBER_MESH_SENTINEL);
@@ -217,7 +217,7 @@ static bool is_near(const cutter *c, const line_walk *w, size_t i) {
     return clip(point_at(c, w->line, i), point_at(c, w->line, i + 1), w->reach, &from, &to);
 }
 
-/* Returns the flags of a run's end; those of the line's own end if the run ends there. */
+/* Returns the flags of a run's end. own: it is also the end of the line itself. */
 static unsigned end_flags(const cutter *c, const line_walk *w, size_t point, bool own) {
     const uint32_t info = c->picture->points[w->line->first + point].info;
     return own && !(info & CAMBER_POINT_CUT) && !w->is_ring ? 0u : CAMBER_MESH_CUT;
@@ -254,8 +254,8 @@ static cut_point neighbour_of(const cutter *c, cut_point point, size_t neighbour
     return clip(point, other, c->limit, &from, &to) ? between(point, other, to) : other;
 }
 
-/* If the line is a piece of a ring and begins here, the sentinel before it holds the neighbour. neighbour: a point,
- * counted from 1; 0: none. */
+/* Begins a run. At the beginning of a piece of a ring, the sentinel before the run holds the neighbour. neighbour: a
+ * point, counted from 1; 0: none. */
 static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, size_t neighbour) {
     if (!w->has_row)
         number_row(c, w);
@@ -270,7 +270,7 @@ static void begin_run(cutter *c, line_walk *w, cut_point start, unsigned flags, 
     put(c, start, w->row, CAMBER_MESH_FIRST | flags);
 }
 
-/* Ends such a run in the same way. */
+/* Ends a run. At the end of a piece of a ring, the sentinel after the run holds the neighbour. */
 static void end_run(cutter *c, const line_walk *w, cut_point stop, unsigned flags, size_t neighbour) {
     cut_point behind = stop;
     if (neighbour) {
@@ -281,7 +281,7 @@ static void end_run(cutter *c, const line_walk *w, cut_point stop, unsigned flag
     put_sentinel_behind(c, behind, w->row, neighbour != 0);
 }
 
-/* Puts those of the segments [first, end) that are near, in order. Segments of a ring are counted around it. */
+/* Adds the segments of [first, end) that are near the tile, in order. Segments of a ring are counted around it. */
 static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
     const size_t segments = w->line->count - 1;
     bool runs = false, near = is_near(c, w, first % segments);
@@ -309,7 +309,7 @@ static void put_runs(cutter *c, line_walk *w, size_t first, size_t end) {
     }
 }
 
-/* Puts a whole ring. */
+/* Adds a whole ring to the tile. */
 static void put_whole_ring(cutter *c, line_walk *w) {
     const size_t segments = w->line->count - 1;
     camber_mesh_tile *tile = c->tile;

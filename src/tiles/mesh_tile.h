@@ -68,7 +68,7 @@ typedef struct camber_mesh_range {
     size_t set, first, end;
 } camber_mesh_range;
 
-/* A corner of triangles of areas. */
+/* A corner of an area's triangles. */
 typedef struct camber_mesh_corner {
     int16_t x, y;
     uint16_t row;
@@ -86,7 +86,7 @@ typedef struct camber_mesh_tile {
     size_t range_count, range_capacity;
     size_t segments;
     bool has_arc_length;
-    camber_mesh_corner *corners; /* corner_count of them, of areas */
+    camber_mesh_corner *corners; /* corner_count corners of areas */
     size_t corner_count, corner_capacity;
     uint32_t *triangles; /* index_count indices, three per triangle */
     size_t index_count, triangle_capacity;

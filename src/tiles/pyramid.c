@@ -89,7 +89,7 @@ static camber_status write_job(pyramid *p, const camber_encode_job *job) {
     return status;
 }
 
-/* Writes all encoded pictures. With waits, it waits for at least one picture, if any is in progress. */
+/* Writes all encoded pictures. If waits is true, it first waits for at least one picture, if any is in progress. */
 static camber_status write_ready(pyramid *p, bool waits) {
     camber_encode_job *job;
     camber_status status = CAMBER_OK;
@@ -345,7 +345,8 @@ static int find_center_zoom(const camber_tiles_area *area) {
     return zoom < area->min_zoom ? area->min_zoom : zoom > area->max_zoom ? area->max_zoom : (int)zoom;
 }
 
-/* If a box crosses the antimeridian, the archive's bounds are the whole world's, and their middle is not the box's. */
+/* If a box crosses the antimeridian, the archive's bounds are the whole world, and their middle is not the middle of
+ * the box. */
 static double find_center_longitude(const camber_tiles_area *area, const double bounds[4]) {
     double longitude, latitude;
     if (area->bounds.x1 <= 1.0)

@@ -10,7 +10,7 @@
  *
  * Wide tasks are packed, the largest first, each into the first part that has room for it. The deep tasks are one
  * sequence, which is cut: at each deep zoom, a part has one stretch of the archive. The cost of the most expensive part
- * is minimised; given that, so is the cost of the most expensive part of the other kind. */
+ * is minimised first, and then the cost of the most expensive part of the other kind. */
 #include "tiles/schedule.h"
 
 #include "archive/pmtiles.h"
@@ -19,9 +19,9 @@
 #include <stdlib.h>
 
 /* The cost of a metatile, in microseconds of one processor: PICTURE_US for each metatile, plus TILE_US and POINT_US for
- * each of its tiles and points, including the time to find them. With a quarter of a second added for each part's start
- * and reading, which is the same for all parts, the model predicts the times of parts (8, 16 and 32 parts) with an
- * error of 7 % (root mean square; 10 million points, 2026-11-27, 9412da4, Intel Xeon, AVX-512). */
+ * each of its tiles and points, including the time to find them. After adding a quarter of a second for each part's
+ * start and reading, which is the same for all parts, the model predicts the times of parts (8, 16 and 32 parts) with
+ * an error of 7 % (root mean square; 10 million points, 2026-11-27, 9412da4, Intel Xeon, AVX-512). */
 static const double PICTURE_US = 1.3e3, TILE_US = 120.0, POINT_US = 0.58;
 /* A part with a wide metatile holds all points. If it also has deep ones, it searches all points for each of their
  * zooms. The search for wide zooms is included in POINT_US, because their metatiles contain most of the points. */

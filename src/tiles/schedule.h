@@ -10,7 +10,7 @@ typedef struct camber_tile_task {
     int zoom, level;      /* level: the zoom whose tiles correspond to the metatiles */
     uint32_t column, row; /* in metatiles */
     uint64_t wanted;      /* tiles that the archive gets, or loses if they are empty */
-    uint64_t touched;     /* those of the wanted tiles that a line may touch */
+    uint64_t touched;     /* the wanted tiles that a line may touch */
     uint64_t points;
 } camber_tile_task;
 

@@ -25,7 +25,7 @@ struct camber_tiles_schedule {
 /* Makes the name of the file with a schedule's features. Returns false if the name is too long. */
 bool camber_schedule_name_features(const char *path, char *name, size_t size);
 
-/* Hashes the sizes of files and their bytes; for large files, only many pieces of them. */
+/* Hashes the sizes of files and their bytes. Of a large file it hashes only some pieces. */
 camber_status camber_files_hash(camber_context *context, const char *const *paths, size_t count, uint64_t *hash);
 /* Writes the whole file, or none. force: an existing file may be replaced. Returns CAMBER_ERROR_IO,
  * CAMBER_ERROR_MEMORY. */

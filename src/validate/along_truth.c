@@ -15,7 +15,7 @@ typedef struct foot {
     bool is_past;           /* the sample is beyond an end of the line */
 } foot;
 
-/* hypot also works for huge numbers, and takes several times as long. */
+/* Faster than hypot, which also works for huge numbers and takes several times as long. */
 static double length_of(double x, double y) {
     return sqrt(x * x + y * y);
 }

@@ -10,8 +10,8 @@ typedef struct camber_along_desc {
     const float *points; /* count pairs of x and y, px */
     size_t count;
     camber_cap cap;
-    /* Dashes have the same caps as the line. An image must be opaque, without a stride or a ramp, and with its
-     * image_px. Only its red channel is computed. */
+    /* Dashes have the same caps as the line. An image must be opaque and have an image_px, but no stride; it cannot be
+     * combined with a ramp. Only its red channel is computed. */
     const camber_paint *paint;
     double pitch_deg; /* 0: seen from above */
 } camber_along_desc;

@@ -9,8 +9,8 @@
 
 enum { SIDE_PX = 96, LINES = 3, RINGS = 6, PIXELS = SIDE_PX * SIDE_PX };
 
-/* Lines that are far apart from each other: straight, bent and curved. The rings are these lines, closed, then a
- * square, and two crossing bars that are narrower than a pixel. */
+/* Lines that are far apart from each other: straight, bent and curved. The rings are these lines, closed, and after
+ * them a square and two crossing bars that are narrower than a pixel. */
 static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f, 86.7f,
                                43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f, 46.0f, 68.0f,
                                56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f, 54.3f, 2.4f,  66.6f,

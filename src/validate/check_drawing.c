@@ -1,5 +1,5 @@
-/* Compares the kernels that draw with their CPU twin, stage by stage and byte for byte; and drawing in slices with
- * drawing at once. */
+/* Compares the kernels that draw with their CPU twin, stage by stage and byte for byte. Also compares drawing in slices
+ * with drawing at once. */
 #include "validate/checks.h"
 
 #include <stdio.h>
@@ -99,8 +99,8 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
     return false;
 }
 
-/* Compares words, of which each segment has `words`. Those of segments that are not drawn are undefined, so they are
- * skipped. */
+/* Compares the words of segments; each segment has `words` of them. The words of segments that are not drawn are
+ * undefined, so they are skipped. */
 static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
                          const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];
@@ -260,7 +260,7 @@ static void close_path(camber_drawing_path *path) {
 }
 
 /* Checks with the vector width of the n-th of the device's other work-groups. Areas are checked, too, because vectors
- * of another width take other rows and columns of cells. */
+ * of another width process other rows and columns of cells. */
 static camber_status check_lanes(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
                                  const char *name, size_t n) {
     camber_device *device = checked->groups[n].device;

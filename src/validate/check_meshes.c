@@ -59,7 +59,7 @@ typedef struct job {
     camber_tessellation_desc desc;
 } job;
 
-/* Compares a mesh with the expected one. With stages, the first stage that differs is named. */
+/* Compares a mesh with the expected one. If with_stages is true, the finding names the first stage that differs. */
 static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_mesh_state *expected, bool with_stages,
                                   camber_check *check) {
     camber_mesh_state got = {0};
@@ -162,8 +162,8 @@ static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) 
     return wanted < mesh_bytes ? wanted : 0;
 }
 
-/* The same for a network, whose points are on the device, too. A polyline may have more points there than are
- * visible. */
+/* Returns such a limit for a network, whose points are on the device, too. A polyline may have more points on the
+ * device than are visible. */
 static uint64_t network_part_bytes(const camber_subject *s) {
     const uint64_t wanted = 4 * (uint64_t)camber_network_get_stats(s->network).kept_points / 3;
     return wanted > LEAST_BUFFER_BYTES ? wanted : 0;
@@ -200,7 +200,7 @@ static camber_status compare_parts(job *j, const camber_mesh_state *whole, cambe
 
 enum { AGAIN, IN_GROUPS, IN_PARTS = IN_GROUPS + CAMBER_CHECKED_GROUPS, WAYS };
 
-/* Makes the mesh again in one of the ways, and compares it. */
+/* Makes the mesh again in one of the ways, and compares it with the first mesh. */
 static camber_status check_way(job *j, int way, const camber_mesh_state *first) {
     char what[64] = "from run to run";
     if (way == IN_PARTS)

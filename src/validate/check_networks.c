@@ -26,7 +26,7 @@ typedef struct job {
 static const struct {
     const char *name;
     double times, bearing_deg; /* relative to the camera with which the subject is seen */
-    double simplify_px;        /* negative: that camera's */
+    double simplify_px;        /* negative: the same as that camera's */
     const char *scene;         /* the scene whose bounds its pixels must keep; NULL: the subject's */
 } cameras[] = {{"zoomed out", 0.2, 0, -1, NULL},
                {"cut", 1, 0, -1, NULL},
@@ -129,7 +129,7 @@ static double reach_of(const job *j) {
         const camber_stroke *stroke = j->strokes + i;
         const double limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2;
         /* With an offset, points may be as far away as the tip of a miter join, and the window is extended by the same
-         * again. */
+         * distance again. */
         const double offset = fabs((double)stroke->offset_px);
         reach = fmax(reach, 0.5 * (double)stroke->width_px * fmax(limit, 1.5) + offset * (2 * fmax(limit, 1.1) + 7));
     }

@@ -168,7 +168,7 @@ static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t pa
     return status;
 }
 
-/* Compares one drawer's picture with that of the first one. */
+/* Compares one drawer's picture with the first drawer's picture. */
 static camber_status check_drawer(job *j, const camber_checked_drawer *drawer) {
     camber_check check = camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
                                             camber_method_get_name(j->desc.method), j->style, drawer->name,

@@ -13,8 +13,8 @@ camber_status camber_subject_tessellate(const camber_subject *subject, camber_me
 /* Whether the subject is checked with a method. */
 bool camber_subject_takes(const camber_subject *subject, const camber_validation_desc *desc, camber_method method);
 
-/* Whether pictures of a method are checked: those of all methods if all checks are requested, otherwise those of the
- * method that was selected, or of strips, which are the default. */
+/* Whether pictures of a method are checked. If all checks are requested, the pictures of all methods are checked;
+ * otherwise only those of the method that was selected, or of strips, which are the default. */
 bool camber_draws_method(const camber_validation_desc *desc, camber_method method);
 
 /* Moves the camera so that a pixel of its picture becomes the centre. */
@@ -31,7 +31,7 @@ camber_status camber_check_networks(camber_validation *validation, const camber_
 camber_status camber_check_pixels(camber_validation *validation, const camber_subject *subject);
 /* Compares the kernels that draw with their twin. */
 camber_status camber_check_drawing(camber_validation *validation, const camber_subject *subject);
-/* The same for a frame, whose passes draw the subject. */
+/* Compares the kernels that draw with their twin for a frame, whose passes draw the subject. */
 camber_status camber_check_frame(camber_validation *validation, const camber_subject *subject,
                                  const camber_frame *frame);
 /* Checks the areas of a frame, whose passes draw the subject: the frame as it is, and the pixels of each layer of
@@ -79,7 +79,7 @@ bool camber_mesh_states_differ(const camber_mesh_state *got, const camber_mesh_s
  * finding. */
 camber_status camber_failure_image_write(camber_validation *validation, camber_window window, const float *truth,
                                          const uint8_t *drawn, camber_finding *finding);
-/* The same for a mesh on the device, around the finding's point. */
+/* Does the same for a mesh on the device, around the finding's point. */
 camber_status camber_failure_image_of_mesh(camber_validation *validation, const camber_checked_device *checked,
                                            const camber_subject *subject, const camber_tessellation_desc *desc,
                                            camber_finding *finding);

@@ -40,8 +40,8 @@ struct camber_checked_device {
     bool broken[3];
 };
 
-/* Opens what the options allow. Anything missing becomes a skipped check. It is CAMBER_ERROR_DEVICE if there is no
- * device, or not the one that was selected. The caller closes it in any case. */
+/* Opens what the options allow. Anything missing becomes a skipped check. Returns CAMBER_ERROR_DEVICE if there is no
+ * device, or if the selected one is missing. The caller closes it in any case. */
 camber_status camber_checked_devices_open(camber_validation *validation);
 void camber_checked_devices_close(camber_checked_devices *devices);
 

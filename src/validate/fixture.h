@@ -41,7 +41,7 @@ typedef struct camber_fixture_desc {
 typedef struct camber_fixture {
     camber_device *device;
     camber_surface *surface[CAMBER_FIXTURE_BACKENDS];  /* NULL: not available, or not requested */
-    camber_renderer *renderer[CAMBER_FIXTURE_DRAWERS]; /* the same */
+    camber_renderer *renderer[CAMBER_FIXTURE_DRAWERS]; /* NULL: not available, or not requested */
 } camber_fixture;
 
 /* Returns CAMBER_OK if the device and, if drawers were requested, at least one of them are open; otherwise the status

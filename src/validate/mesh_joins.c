@@ -7,7 +7,7 @@
 
 /* A join with a larger tangent is split. */
 static const double TAN_SPLIT = 2.0;
-/* So close to the bound, the mesh's single precision may decide either way. */
+/* This close to the bound, a mesh in single precision may decide either way. */
 static const double AT_BOUND = 1e-5;
 
 /* A triangle, by the positions of its indices. */

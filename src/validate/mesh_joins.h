@@ -30,9 +30,9 @@ typedef struct camber_mesh_joins {
     size_t count;
 } camber_mesh_joins;
 
-/* strokes: those with which the mesh was tessellated. A join whose room equals its bound up to a relative 1e-5 counts
- * as tight. Seams are found if they have triangles, as in kite and fan. Returns false if memory is exhausted. Cost:
- * about 10 ns per triangle. */
+/* strokes: those with which the mesh was tessellated. A join whose room equals its bound up to a relative error of 1e-5
+ * counts as tight. Seams are found if they have triangles, as in kite and fan. Returns false if memory is exhausted.
+ * Cost: about 10 ns per triangle. */
 bool camber_mesh_joins_find(const camber_mesh_data *mesh, const camber_stroke *strokes, camber_mesh_joins *joins);
 void camber_mesh_joins_free(camber_mesh_joins *joins);
 

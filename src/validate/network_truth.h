@@ -12,8 +12,8 @@ typedef struct camber_projected {
      * points, so that there is a point wherever a picture may have something to compare. */
     camber_lines lines;
     uint32_t *rows;   /* for each polyline */
-    uint32_t *places; /* for each point: the index of the corresponding point in the entry's polyline, or of the start
-                         of its segment */
+    uint32_t *places; /* for each point: the index of the corresponding point in the entry's polyline, or of the point
+                         at which its segment starts */
     size_t capacity;
 } camber_projected;
 

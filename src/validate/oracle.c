@@ -63,13 +63,13 @@ static double plane_at(const double *plane, double x, double y) {
     return (plane[0] * x + plane[1] * y - plane[2]) / reach;
 }
 
-/* The same for a disc. */
+/* Returns the same for the edge of a disc. */
 static double disc_at(const shape *s, double x, double y) {
     return s->radius > 0 ? (hypot(x - s->x, y - s->y) - s->radius) / 0.7072 : -INFINITY;
 }
 
-/* Returns -1 if the pixel around x, y is outside, +1 if it is inside, 0 if it may be neither. Saves testing the samples
- * of most pixels. */
+/* Returns -1 if the pixel around x, y is outside, +1 if it is inside, and 0 if it may be partly inside. So the samples
+ * of most pixels need not be tested. */
 static int pixel_side(const shape *s, double x, double y) {
     double most = disc_at(s, x, y);
     for (int i = 0; i < s->plane_count; i++)

@@ -18,8 +18,8 @@ typedef struct camber_picture_error_desc {
     void *user;
 } camber_picture_error_desc;
 
-/* Computes one difference per picture, equal to that of camber_difference_of for the whole picture. Returns false if
- * memory is exhausted. */
+/* Computes one difference per picture, equal to the result of camber_difference_of for the whole picture. Returns false
+ * if memory is exhausted. */
 bool camber_picture_errors_measure(const camber_picture_error_desc *desc, camber_difference *differences);
 
 #endif

@@ -1,7 +1,7 @@
 /* The bounds for the pixels of plain strokes, in 255ths and in shares of the pixels that an edge crosses. Bounds for
- * features along lines are in the rows of check_along.c. They were measured with Mesa's llvmpipe, plus a quarter. The
- * bounds of a scene include its known faults: ends of lines whose last segments are shorter than a pixel, and lines
- * that overlap themselves, whose parts are anti-aliased separately. */
+ * features along lines are in the rows of check_along.c. The bounds in this file are values measured with Mesa's
+ * llvmpipe, plus a quarter. The bounds of a scene include its known faults: ends of lines whose last segments are
+ * shorter than a pixel, and lines that overlap themselves, whose parts are anti-aliased separately. */
 #include "validate/checks.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ static const camber_pixel_bounds kernels = {0.85, 0.0150, 0.0005};
  * consists mostly of crossings. */
 static const double UNITED_MORE = 0.25, UNITED_MORE_OF_INPUT = 1.0;
 
-/* The same for lines that lost points, whose corners are sharper. */
+/* How much larger the error may be for lines that lost points, because their corners are sharper. */
 static const double SIMPLIFIED_MORE = 0.5;
 
 /* The oracle's own error for a pixel that an edge crosses, in 255ths: 16 of its 256 samples may be on a line next to

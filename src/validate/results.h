@@ -33,7 +33,7 @@ typedef struct camber_finding {
 /* Bounds for the errors of pixels, over the pixels that an edge crosses. */
 typedef struct camber_pixel_bounds {
     double mean;             /* in 255ths */
-    double past_16, past_64; /* share of pixels that may differ by more than 16, by more than 64 */
+    double past_16, past_64; /* shares of pixels that may differ by more than 16, and by more than 64 */
 } camber_pixel_bounds;
 
 /* Measured errors of pixels. */

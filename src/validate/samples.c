@@ -10,8 +10,8 @@ enum { SIDE_PX = 48 };
 
 /* ---- Choosing ---- */
 
-/* Returns the i-th index in an order in which any first few are spread over all of them: multiples of the golden
- * ratio. */
+/* Returns the i-th index in an order whose first indices, however few, are spread over all of them: multiples of the
+ * golden ratio. */
 static size_t spread(size_t i, size_t count) {
     const double turns = (double)i * 0.6180339887498949;
     const size_t at = (size_t)((turns - (double)(size_t)turns) * (double)count);

@@ -252,7 +252,8 @@ static void smooth_rings(camber_made_scene *scene, uint64_t *seed) {
     }
 }
 
-/* Longer than a block of a work-group and of scan, so that the borders of blocks are inside one line. */
+/* A line that is longer than a block of a work-group and than a block of scan, so that the borders of blocks are inside
+ * the line. */
 static void one_long_line(camber_made_scene *scene, uint64_t *seed) {
     camber_made_scene_walk(scene, seed, 20011, (const double[]){0.2, 9}, 1.2);
     end_line(scene);

@@ -19,7 +19,7 @@ typedef struct camber_made_scene {
 /* ---- Building ---- */
 
 void camber_made_scene_point(camber_made_scene *scene, double x, double y);
-/* Makes a polyline of the points since the end of the last one. */
+/* Makes a polyline from the points that were added since the previous polyline ended. */
 void camber_made_scene_end(camber_made_scene *scene, size_t row);
 /* Adds count points, starting anywhere in a square of 1000 px. Each step has a random length from step[0] to step[1]
  * px, and turns by at most turn radians. */

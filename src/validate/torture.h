@@ -23,8 +23,8 @@ typedef struct camber_torture_set {
 camber_torture_set camber_torture_make(void);
 void camber_torture_free(camber_torture_set *set);
 
-/* Create an empty set, and end a figure, which consists of the points of lines since the last one. Cells fill the
- * picture in rows. */
+/* The first function creates an empty set. The second ends a figure, which consists of the points added to lines since
+ * the previous figure. Cells fill the picture in rows. */
 camber_torture_set camber_torture_begin(int width);
 void camber_torture_end_figure(camber_torture_set *set, const char *name, double width_px);
 

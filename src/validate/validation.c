@@ -19,8 +19,8 @@ static camber_status check_lines(camber_validation *v, const camber_subject *s) 
     return status;
 }
 
-/* All widths for which a kernel or a shader has a special case. Pictures use others for widths that would cover
- * everything. */
+/* All widths for which a kernel or a shader has a special case. Pictures use scene_drawn_strokes instead, because the
+ * largest of these widths would cover everything. */
 static const camber_stroke scene_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.3f, .miter_limit = 1},
                                                                {.width_px = 2, .miter_limit = 0},
                                                                {.width_px = 9, .miter_limit = 10},

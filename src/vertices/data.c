@@ -1,4 +1,4 @@
-/* Frees what is read back, or made by the twin. */
+/* Frees meshes and stages that were read back, or made by the twin. */
 #include "vertices/vertices.h"
 
 void camber_mesh_data_destroy(camber_mesh_data *data) {

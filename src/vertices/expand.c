@@ -16,9 +16,9 @@
  * Kite and fan: a record is a point, and triangles name its corners. Only corners that are named become vertices:
  *
  *        in                     out        1 IN_LEFT, 2 IN_RIGHT: of the segment into the point
- *     ---------1        3---------         3 OUT_LEFT, 4 OUT_RIGHT: of that out of it
+ *     ---------1        3---------         3 OUT_LEFT, 4 OUT_RIGHT: of the segment out
  *              |   0    |                  0 CENTRE: the point
- *     ---------2        4---------         5 and more: a join's own, on its outer side */
+ *     ---------2        4---------         5 and more: a join's own corners */
 #include "vertices/vertices.h"
 
 #include "kernels/join.h"
@@ -27,8 +27,8 @@
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
 
-/* Makes a vertex of record `at`. Its segment leaves the point if out is set, else it enters it; other is the record at
- * the segment's other end. */
+/* Makes a vertex of record `at`. Its segment is the one out of the point if `out` is set, else the one into it; `other`
+ * is the record at the segment's other end. */
 static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
     const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
     const uint32_t first = a->join & CAMBER_JOIN_AFTER_FIRST ? 128u : 0u;
@@ -46,7 +46,7 @@ static camber_vertex make_vertex(const camber_record *records, size_t at, size_t
     };
 }
 
-/* Moves a vertex off its point: along its segment, and across it to the left, in units of the reach. */
+/* Moves a vertex away from its point: along its segment, and across it to the left, in units of the reach. */
 static void set_extrusion(camber_vertex *vertex, float along, float across) {
     vertex->along = along;
     vertex->across = (int16_t)(across * 16384.0f);
@@ -100,7 +100,7 @@ static void expand_strip(camber_mesh_data *data) {
 
 /* ---- Corners ---- */
 
-/* Makes the vertex that an index into records and corners names. */
+/* Makes the vertex that an index (record and corner) names. */
 static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index, const camber_row *rows) {
     const camber_record *records = data->records;
     const size_t at = index >> CAMBER_CORNER_BITS;
@@ -129,8 +129,8 @@ static unsigned count_below(const corner_set *set, camber_u32 corner) {
     return corner < 64 ? low : low + (unsigned)__builtin_popcountll(set->bits[1] & below);
 }
 
-/* Finds which corners each record has, and the number of each record's first vertex. An index without a record is set
- * to 0. */
+/* Finds which corners of each record are named, and the number of each record's first vertex. An index that names no
+ * record is set to 0. */
 static camber_status find_corners(camber_context *context, camber_mesh_data *data, corner_set **sets,
                                   uint32_t **first_vertices) {
     const size_t records = data->info.record_count;

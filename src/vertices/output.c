@@ -45,7 +45,7 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     return CAMBER_OK;
 }
 
-/* Finds how much output the part has; a part without points has none. */
+/* Counts the output of a part; a part without points has none. */
 static camber_status count_output(camber_mesh *mesh, camber_mesh_part *part) {
     camber_program *program = NULL;
     if (part->slot_count == 0)
@@ -189,7 +189,7 @@ camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *pa
     if (status != CAMBER_OK || part->scanned)
         return status;
     status = count_output(mesh, part);
-    /* Callers that read the mesh have allocated for the counts of before. */
+    /* Callers that read the mesh have allocated memory for the earlier counts. */
     if (status == CAMBER_OK && mesh->joins_counted && (part->record_count != records || part->index_count != indices))
         status = camber_part_fail_remade(mesh, part, part->slot_count, records);
     if (status != CAMBER_OK)

@@ -40,7 +40,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     return status;
 }
 
-/* Reads the records of a part. With arc lengths a record has 32 bytes, of which the first 16 are its words. */
+/* Reads the records of a part. With arc lengths a record has 32 bytes, and the first 16 are its words. */
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
     camber_buffer *buffer = part->buffers[CAMBER_BUFFER_RECORDS].buffer;
     camber_record *records = data->records + part->first_record;
@@ -61,8 +61,8 @@ static camber_status read_records(const camber_mesh *mesh, const camber_mesh_par
     return CAMBER_OK;
 }
 
-/* Appends a part's records and corners to those of the previous parts, and continues the numbering of the corners'
- * records. */
+/* Appends a part's records and corners to the records and corners of the previous parts, and continues the numbering of
+ * the corners' records. */
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
     camber_status status = camber_part_ensure_output(mesh, part);

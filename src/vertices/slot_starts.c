@@ -1,5 +1,5 @@
-/* Finds where the output of polylines begins in a part. The scan stores only for the first slot of each work-item's
- * chunk where its vertices and indices begin within the block. From there the host counts on, from the join words. */
+/* Finds where the output of polylines begins in a part. For the first slot of each work-item's chunk, the scan stores
+ * where its vertices and indices begin within the block. From there the host goes on counting, from the join words. */
 #include "vertices/vertices.h"
 
 #include "kernels/join.h"

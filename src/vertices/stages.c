@@ -1,4 +1,4 @@
-/* Reads back what classify and scan left on the device, one struct per point, for checks against the CPU twin.
+/* Reads the results of classify and scan back from the device, one struct per point, for checks against the CPU twin.
  *
  * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. The device's output is
  * not trusted: a broken kernel must show up as a difference, never as a read outside a buffer. */
@@ -20,7 +20,7 @@ static const void *map(const camber_mesh *mesh, camber_buffer *buffer, size_t wo
 }
 
 /* Appends the points of a part to stages. If a device has counted wrongly, a polyline's slots may be past the part's
- * end or overlap another's. So this only ever moves forward, and reads no slot twice. */
+ * end or overlap another's. So this function only moves forward, and reads no slot twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;

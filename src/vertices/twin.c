@@ -116,7 +116,7 @@ static void push_tight_start(twin *t, const visited_point *p) {
     t->data->info.vertex_count++;
 }
 
-/* Appends the records of a point: the table is above camber_strip_records in kernels/join.h. */
+/* Appends the records of a point. Their table is above camber_strip_records in kernels/join.h. */
 static void walk_strip_point(twin *t, const visited_point *p) {
     const bool first = p->info & CAMBER_POINT_FIRST, last = p->info & CAMBER_POINT_LAST;
     if (first)
@@ -139,7 +139,7 @@ static uint32_t corner_at(size_t slot, camber_u32 corner) {
 }
 
 /* Appends the triangles of a segment's body, which ends at the point. At a join the body has the point as a vertex (a,
- * b), so that the join's triangles can meet it there; at a cap it is a plain quad's side.
+ * b), so that the join's triangles can share this vertex; at a cap it is a plain quad's side.
  *
  *     left ----------------- end_left          both ends joined: four triangles around a and b
  *       |                        |             one joined: three
@@ -173,8 +173,8 @@ static void push_body(twin *t, const visited_point *p) {
 }
 
 /* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the incoming
- * segment to that of the outgoing one. A triangle's last vertex tells the shader its segment, so the order of vertices
- * depends on which vertex carries the right one. The winding is that of the bodies. */
+ * segment to the outer edge of the outgoing one. A triangle's last vertex tells the shader its segment, so the order of
+ * vertices depends on which vertex carries the right segment. The triangles wind like those of the bodies. */
 static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
@@ -209,7 +209,7 @@ static void walk_body_point(twin *t, const visited_point *p) {
     }
 }
 
-/* Notes the point's stages. Its vertices and indices begin after whatever has been appended so far. */
+/* Notes the point's stages. Its vertices and indices begin after everything that has been appended so far. */
 static void note_stages(twin *t, size_t slot, camber_u32 join) {
     const camber_polylines *p = t->polylines;
     camber_stages *stages = t->stages;
@@ -268,8 +268,8 @@ static void walk(twin *t) {
     }
 }
 
-/* Replaces records by vertices in the stages of kite and fan. The walk could only note a point's record: which of its
- * corners become vertices is known only when all triangles have been made. */
+/* Replaces records by vertices in the stages of kite and fan. The walk could only note a point's record, because it is
+ * not known which of the record's corners become vertices until all triangles have been made. */
 static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
     const camber_status status = camber_mesh_data_find_first_vertices(context, data, &first_vertices);

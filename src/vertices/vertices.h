@@ -6,7 +6,7 @@
 
 #include "camber_proof.h"
 
-/* output.c: for meshes that GL draws or that a caller reads. */
+/* output.c: makes the output of meshes that GL draws or that a caller reads. */
 extern const camber_mesh_output camber_vertices;
 
 /* Makes sure that a part is made, that its join words are those of the mesh's method, and that they are scanned, so
@@ -14,10 +14,11 @@ extern const camber_mesh_output camber_vertices;
 camber_status camber_part_ensure_counted(camber_mesh *mesh, camber_mesh_part *part);
 /* Also makes sure that its output is in its buffers. */
 camber_status camber_part_ensure_output(camber_mesh *mesh, camber_mesh_part *part);
-/* Numbers the output of a counted part after that of the previous parts, which is in counts, and adds it to counts. */
+/* Numbers the output of a counted part after the output of the previous parts, whose counts are given, and adds the
+ * part's counts to them. */
 camber_status camber_part_number(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_info *counts);
 /* Calls finish of the shared buffers' table for a part's output. If status is a failure, which has been logged already,
- * returns it and logs no other. */
+ * returns it and logs nothing more. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
 /* joins.c: adds the joins and triangles of a part to counts. The part's join words must be in its buffers. */
@@ -29,8 +30,8 @@ void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t p
 size_t camber_records_max(camber_method method);
 camber_status camber_fail_records(camber_context *context, camber_method method);
 
-/* read.c: finds the first index of a polyline among those of the whole mesh, as camber_mesh_read gives them. Makes the
- * polyline's part if it is gone. */
+/* read.c: finds the first index of a polyline among the indices of the whole mesh, as camber_mesh_read gives them.
+ * Makes the polyline's part again if it was evicted. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
 /* slot_starts.c: finds where the output of a part's polylines begins, from the results of classify and scan. */
@@ -44,13 +45,13 @@ typedef struct camber_slot_starts {
 static inline camber_slot_starts camber_slot_starts_of(const camber_mesh *mesh, const camber_mesh_part *part) {
     return (camber_slot_starts){.finder = {.mesh = mesh, .part = part}};
 }
-/* Maps the whole part, unless it is mapped already. This waits for the device, and pays off for many queries. The part
- * must not lose its buffers until it is unmapped. */
+/* Maps the whole part, unless it is mapped already. This waits for the device, so it is worthwhile only for many
+ * queries. The part must not lose its buffers until it is unmapped. */
 camber_status camber_slot_starts_map(camber_slot_starts *starts);
 /* Unmaps and forgets the part, if there is one. */
 void camber_slot_starts_unmap(camber_slot_starts *starts);
-/* Returns vertices | indices << 16: how many the slot's block has before it. Queries in ascending order are cheap.
- * This, and the first slot of a polyline, need a mapped part. */
+/* Returns how many vertices and indices the slot's block has before the slot, as vertices | indices << 16. Queries in
+ * ascending order are cheap. This query, and one for the first slot of a polyline, need a mapped part. */
 uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
 size_t camber_slot_starts_slot(const camber_slot_starts *starts, size_t polyline);
 /* Finds the first index of a polyline, and its first record. A strip has two indices for each record; kite and fan have
@@ -65,7 +66,8 @@ void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *base
 
 /* expand.c: makes the vertices and indices of a mesh from its records and corners. */
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
-/* For kite and fan: gives each record's first vertex by number, record_count + 1 of them, freed with camber_free. */
+/* For kite and fan: finds the number of each record's first vertex, record_count + 1 numbers. Free them with
+ * camber_free. */
 camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
                                                    uint32_t **first_vertices);
 

@@ -1,5 +1,5 @@
-/* Buffers in OpenCL. Some drivers allocate memory only when a kernel first uses it, and then cannot report that there
- * is none: PoCL ends the process. So buffers are allocated at once in host memory (CL_MEM_ALLOC_HOST_PTR). */
+/* Buffers in OpenCL. Some drivers allocate memory only when a kernel first uses it, and then cannot report a lack of
+ * memory: PoCL ends the process. So buffers are allocated at once in host memory (CL_MEM_ALLOC_HOST_PTR). */
 #include "gpu/opencl/opencl.h"
 
 #include <CL/cl_gl.h>
@@ -18,7 +18,7 @@ camber_status camber_opencl_make_buffer(const camber_device *device, camber_buff
     const bool at_once = device->host_memory && kind < CAMBER_BUFFER_BORROWED;
     const cl_mem_flags flags = of_kind[kind] | (at_once ? CL_MEM_ALLOC_HOST_PTR : 0);
     cl_int code;
-    /* OpenCL wants a pointer that may be written; kernels only read what callers give as const bytes. */
+    /* OpenCL wants a pointer that may be written; kernels only read bytes that callers pass as const. */
     cl_mem made = clCreateBuffer(opencl_of(device)->cl, flags, size_bytes, (void *)(uintptr_t)bytes, &code);
     if (code == CL_SUCCESS)
         *native = made;

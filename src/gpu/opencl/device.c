@@ -112,7 +112,7 @@ static camber_status find_lanes(camber_device *device) {
     return CAMBER_OK;
 }
 
-/* OpenCL has its own name for each kind of display. */
+/* Returns OpenCL's name for a kind of display. */
 static cl_context_properties display_kind(const camber_gl_handles *gl) {
     return gl->display_kind == CAMBER_GL_DISPLAY_GLX ? CL_GLX_DISPLAY_KHR : CL_EGL_DISPLAY_KHR;
 }

@@ -18,7 +18,7 @@ static inline const camber_opencl_device *opencl_of(const camber_device *device)
     return device->native;
 }
 
-/* Logs "CALL: OpenCL NAME (code); cure" and returns the status for that code. */
+/* Logs "CALL: OpenCL NAME (code); hint" and returns the status for that code. */
 camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
 
 camber_status camber_opencl_make_buffer(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,

@@ -12,15 +12,13 @@
  *     8 + 4 + 4   the device, the version, the number of kernels
  *     8           flags
  *     4           the number of files of the program
- *     41          a hash in letters from A: the folder in PoCL's cache into which the binary is unpacked
- *     8           the size of global variables, if the flags have GLOBALS
- *     8           the bytes of the first file with its name and both their sizes, which follow
- *     4 + 11      "/program.bc"
- *     4 + n       LLVM's code
+ *     41          a hash written in capital letters from A on: the folder in PoCL's cache into which the binary is
+ * unpacked 8           the size of global variables, if the flags have GLOBALS 8           the bytes of the first file,
+ * with its name and the sizes of both, which follow 4 + 11      "/program.bc" 4 + n       LLVM's code
  *     ...         other files, and the kernels
  *
- * The stripped binary has an empty file by another name, since PoCL wants one, and a folder of its own. In the folder
- * of a program that was compiled from source PoCL would find the code. */
+ * The stripped binary has an empty file by another name, since PoCL wants one, and a folder of its own, because PoCL
+ * would find the code in the folder of a program that was compiled from source. */
 #define _GNU_SOURCE /* ST_NOEXEC */
 
 #include "gpu/opencl/pocl.h"
@@ -121,7 +119,7 @@ camber_status camber_pocl_check_threads(camber_context *context) {
         wanted, (unsigned long long)limit.rlim_cur);
 }
 
-/* Finds the folder where PoCL keeps kernels. false: it has none, or its name is too long. */
+/* Finds the folder where PoCL keeps kernels. Returns false if there is none, or if its name is too long. */
 static bool find_folder(char folder[PATH_MAX]) {
     const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     const int length = own && *own       ? snprintf(folder, PATH_MAX, "%s", own)

@@ -13,7 +13,8 @@ bool camber_pocl_strip(unsigned char *binary, size_t *size_bytes);
 /* PoCL ends the process if it cannot continue. These two return CAMBER_ERROR_DEVICE before that happens. */
 /* Checks whether PoCL can start its threads. Call it before a driver is first used. */
 camber_status camber_pocl_check_threads(camber_context *context);
-/* Checks whether PoCL can store and run the kernels of a binary; NULL: of source code, which it also has to link. */
+/* Checks whether PoCL can store and run the kernels of a binary, or, if that is NULL, of source code, which PoCL also
+ * has to link. */
 camber_status camber_pocl_check_program(const camber_device *device, const unsigned char *binary, size_t size_bytes);
 
 #endif

@@ -24,10 +24,10 @@ typedef struct built_program {
     bool built, kept;
 } built_program;
 
-/* Change this if the same program is to be saved in another form. */
+/* Change this to save the same program in another form. */
 static const char FORM[] = "without LLVM's code";
 
-/* A hash of everything that a binary depends on. */
+/* Returns a hash of everything that a binary depends on. */
 static uint64_t cache_key(const camber_device_info *info, const camber_program_source *from) {
     uint64_t key = camber_hash(CAMBER_HASH_START, from->text, from->text_bytes);
     const char *options = from->options;
@@ -41,8 +41,8 @@ static void cache_name(uint64_t key, char name[64]) {
     snprintf(name, 64, "kernels-%016llx.bin", (unsigned long long)key);
 }
 
-/* A hash of a binary and its key. It tells a whole file from one that a crash or a full disk cut short, and from one
- * that has another program's name. */
+/* Returns a hash of a binary and its key, which detects a file that a crash or a full disk cut short, and a file that
+ * belongs to another program. */
 static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t size_bytes) {
     return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
 }
@@ -161,7 +161,7 @@ static bool save_binary(camber_device *device, const built_program *program) {
 /* Loads under the program's lock. PoCL unpacks a binary file by file, and another process that unpacks the same one
  * might look for a file too early. */
 static bool load_alone(camber_device *device, built_program *program, const char *options) {
-    static const double LONGEST_MS = 30e3; /* it takes 2 ms, on a busy machine much longer */
+    static const double LONGEST_MS = 30e3; /* loading takes 2 ms, and much longer on a busy machine */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     const bool loaded = load_cached(device, program, options);
     camber_cache_unlock(lock);
@@ -181,7 +181,8 @@ static bool use_saved(camber_device *device, built_program *program, const char 
 
 /* Builds under the program's lock, unless another process has done so while this one waited. */
 static camber_status build_alone(camber_device *device, built_program *program, const camber_program_source *from) {
-    static const double LONGEST_MS = 600e3; /* a lock ends with its process; without it this one would compile, too */
+    static const double LONGEST_MS =
+        600e3; /* a lock ends with its process; without the lock this process compiles too */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     camber_status status = CAMBER_OK;
     program->kept = load_cached(device, program, from->options);

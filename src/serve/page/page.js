@@ -266,7 +266,7 @@ async function describe(folder) {
         throw new Error(answer.status);
     return {folder, tiles: await answer.json()};
 }
-// Returns the tiles for the page's theme. Tiles that exist only in dark make the page dark.
+// Returns the tiles for the page's theme. If the tiles have only the dark theme, the page becomes dark.
 async function describeForTheme() {
     const found = await describe(''), theme = found.tiles.camber?.theme ?? null;
     element('theme').hidden = theme === 'dark';

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Makes the fonts that camber ships of Debian's Noto Sans (fonts-noto-core): subset.py FOLDER writes them into FOLDER.
+"""Makes the fonts that camber ships from Debian's Noto Sans (fonts-noto-core). subset.py FOLDER writes them there.
 
-They have Latin, Greek, Cyrillic, punctuation, currency signs and arrows, with what shapes them, and no hints, as camber
-draws outlines. The same input gives the same bytes (fonttools 4.38)."""
+They have Latin, Greek, Cyrillic, punctuation, currency signs and arrows, with the tables that shape them, but no hints,
+because camber draws outlines. The same input gives the same bytes (fonttools 4.38)."""
 import os
 import sys
 

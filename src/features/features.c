@@ -188,11 +188,11 @@ static bool reads_the_same(const camber_schema *one, const camber_schema *other)
     bool same =
         one->property_count == other->property_count && one->wants_id == other->wants_id &&
         one->wants_all_properties == other->wants_all_properties && one->directed == other->directed &&
-        one->wants_polygons == other->wants_polygons && one->wants_areas == other->wants_areas &&
-        one->wants_points == other->wants_points && one->wants_plain == other->wants_plain &&
-        one->wants_plain_areas == other->wants_plain_areas && one->wants_plain_points == other->wants_plain_points &&
-        one->wants_label_lines == other->wants_label_lines && one->wants_label_areas == other->wants_label_areas &&
-        one->wants_label_points == other->wants_label_points;
+        one->labels_directed == other->labels_directed && one->wants_polygons == other->wants_polygons &&
+        one->wants_areas == other->wants_areas && one->wants_points == other->wants_points &&
+        one->wants_plain == other->wants_plain && one->wants_plain_areas == other->wants_plain_areas &&
+        one->wants_plain_points == other->wants_plain_points && one->wants_label_lines == other->wants_label_lines &&
+        one->wants_label_areas == other->wants_label_areas && one->wants_label_points == other->wants_label_points;
     for (size_t i = 0; same && i < one->property_count; i++) {
         const camber_property_readers a = readers_of(one, i), b = readers_of(other, i);
         same = strcmp(one->properties[i], other->properties[i]) == 0 && a.kinds == b.kinds &&

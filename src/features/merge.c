@@ -343,11 +343,12 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
 }
 
 /* Merges the lines of labels, which come last, so that the pieces of a street with one name become one line. They are
- * not counted. */
+ * not counted. If icons show the direction of lines, as the arrows of one-way streets do, no line may be turned. */
 static camber_status merge_labels(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
     const size_t counted = features->stats.merged_polylines;
     const camber_status status =
-        merge(features, camber_features_find_labels(features, first_polyline), rule, CAMBER_GEOMETRY_LABEL_LINE);
+        merge(features, camber_features_find_labels(features, first_polyline),
+              features->schema->labels_directed ? CAMBER_MERGE_DIRECTED : rule, CAMBER_GEOMETRY_LABEL_LINE);
     features->stats.merged_polylines = counted;
     return status;
 }

@@ -88,11 +88,12 @@ typedef struct camber_schema {
     size_t label_source_layer_count; /* how many more source layers, after these, visible symbol layers name */
     bool wants_id;                   /* an expression reads the feature's id */
     bool wants_all_properties;       /* an expression reads properties without naming them */
-    bool directed;       /* a line layer depends on the direction of lines: dashes, offsets, gradients, patterns */
-    bool wants_polygons; /* outlines of polygons are drawn: by a line layer whose filter accepts polygons, by a fill
-                            layer with an outline colour, or as corners by a circle layer */
-    bool wants_areas;    /* a fill layer is drawn, so polygons are also read as rings */
-    bool wants_points;   /* a circle layer whose filter accepts points is drawn */
+    bool directed;        /* a line layer depends on the direction of lines: dashes, offsets, gradients, patterns */
+    bool labels_directed; /* an icon turns with its line, and so shows the line's direction */
+    bool wants_polygons;  /* outlines of polygons are drawn: by a line layer whose filter accepts polygons, by a fill
+                             layer with an outline colour, or as corners by a circle layer */
+    bool wants_areas;     /* a fill layer is drawn, so polygons are also read as rings */
+    bool wants_points;    /* a circle layer whose filter accepts points is drawn */
     /* For each: a symbol layer is drawn whose filter accepts such features. */
     bool wants_label_lines, wants_label_areas, wants_label_points;
     /* A plain layer is drawn (for areas or points: a plain layer that accepts them), so data without a schema is read

@@ -41,7 +41,7 @@ void camber_features_pin_borders(camber_features *features, size_t first_polylin
 /* Joins the lines and adds them to the set. If the style depends on the direction of lines, the end of a line is joined
  * only to the start of another. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
-/* Does the same for labels, whatever the directions of their lines. Joined pieces are not counted. */
+/* Does the same for labels. Directions count only if icons show them. Joined pieces are not counted. */
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features);
 
 /* ---- Shared by the files of the stitcher ---- */

@@ -24,12 +24,14 @@ static void find_label_wants(const camber_style_layer *layer, camber_schema *sch
     schema->wants_label_lines |= camber_style_layer_may_take(layer, "LineString");
     schema->wants_label_areas |= camber_style_layer_may_take(layer, "Polygon");
     schema->wants_label_points |= camber_style_layer_may_take(layer, "Point");
+    schema->labels_directed |= camber_style_layer_turns_icons(layer);
 }
 
 /* Finds which geometries other than lines are drawn. */
 static void find_wants(const camber_style *style, camber_schema *schema) {
     schema->wants_polygons = schema->wants_areas = schema->wants_points = false;
     schema->wants_label_lines = schema->wants_label_areas = schema->wants_label_points = false;
+    schema->labels_directed = false;
     schema->wants_plain = schema->wants_plain_areas = schema->wants_plain_points = false;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;

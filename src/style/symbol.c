@@ -427,6 +427,25 @@ bool camber_style_layer_may_label(const camber_style_layer *layer, const camber_
            (may_show(layer, CAMBER_TEXT_FIELD, feature) || may_show(layer, CAMBER_ICON_IMAGE, feature));
 }
 
+/* Whether a property has this value for all features at all zooms. */
+static bool is_always(const camber_style_layer *layer, camber_property_id id, const char *name) {
+    const camber_expression *expression = layer->properties[id];
+    camber_evaluation evaluation;
+    camber_value value;
+    if (!expression || expression->reads_zoom || expression->reads_feature)
+        return false;
+    camber_evaluation_begin(&evaluation, layer->min_zoom, NULL);
+    const bool always = camber_expression_evaluate(expression, &evaluation, &value) && is_name(&value, name);
+    camber_evaluation_end(&evaluation);
+    return always;
+}
+
+bool camber_style_layer_turns_icons(const camber_style_layer *layer) {
+    return layer->properties[CAMBER_ICON_IMAGE] && layer->properties[CAMBER_SYMBOL_PLACEMENT] &&
+           !is_always(layer, CAMBER_SYMBOL_PLACEMENT, "point") &&
+           !is_always(layer, CAMBER_ICON_ROTATION_ALIGNMENT, "viewport");
+}
+
 static bool has_image(const camber_node *node) {
     if (node->type.type == CAMBER_TYPE_IMAGE)
         return true;

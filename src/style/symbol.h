@@ -116,6 +116,8 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
                                        const camber_style_images *images, camber_arena *arena, camber_symbol *symbol);
 /* Whether a symbol layer may have a text or an icon for a feature at any zoom. */
 bool camber_style_layer_may_label(const camber_style_layer *layer, const camber_feature_view *feature);
+/* Whether a symbol layer may have icons that turn with lines. */
+bool camber_style_layer_turns_icons(const camber_style_layer *layer);
 /* Whether a symbol layer may name images: icons, or images within text. */
 bool camber_style_layer_names_images(const camber_style_layer *layer);
 

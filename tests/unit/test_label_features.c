@@ -336,6 +336,28 @@ static void test_source(void **state) {
     json_decref(root);
 }
 
+/* Two lines that end at one point become one line of labels, unless an icon shows which way they run. */
+static void test_directions(void **state) {
+    static const char meeting[] =
+        "{\"type\": \"FeatureCollection\", \"features\": ["
+        "{\"type\": \"Feature\", \"properties\": {\"name\": \"a\"}, \"geometry\": {\"type\": \"LineString\", "
+        "\"coordinates\": [[0, 0], [1, 0]]}},"
+        "{\"type\": \"Feature\", \"properties\": {\"name\": \"a\"}, \"geometry\": {\"type\": \"LineString\", "
+        "\"coordinates\": [[2, 0], [1, 0]]}}]}";
+    file_reading *it = *state;
+    json_t *root = json_loads(meeting, 0, NULL);
+    assert_non_null(root);
+    draw(it, 0);
+    for (size_t directed = 0; directed < 2; directed++) {
+        camber_geojson_stats stats;
+        it->style.schema.labels_directed = directed;
+        camber_features *set = read_source(it, root, true, &stats);
+        expect_labels(set, directed ? 2 : 1, 0, 0);
+        camber_features_destroy(set);
+    }
+    json_decref(root);
+}
+
 /* ---- Vector tiles ---- */
 
 enum { ZOOM = 3 };
@@ -522,8 +544,9 @@ static void test_margin(void **state) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(test_osm),    TEST(test_region), TEST(test_real_files), TEST(test_geojson),
-                                       TEST(test_source), TEST(test_tiles),  TEST(test_plan),       TEST(test_suit),
-                                       TEST(test_saved),  TEST(test_margin)};
+    const struct CMUnitTest tests[] = {TEST(test_osm),     TEST(test_region), TEST(test_real_files),
+                                       TEST(test_geojson), TEST(test_source), TEST(test_directions),
+                                       TEST(test_tiles),   TEST(test_plan),   TEST(test_suit),
+                                       TEST(test_saved),   TEST(test_margin)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -611,6 +611,31 @@ static void test_wants(void **state) {
     teardown(&f);
 }
 
+/* Lines keep their directions for icons that turn with them. */
+static void test_directions(void **state) {
+    (void)state;
+    static const struct {
+        const char *members;
+        bool directed;
+    } cases[] = {
+        {LAYOUT("\"icon-image\": \"a\", \"symbol-placement\": \"line\""), true},
+        {LAYOUT("\"icon-image\": \"a\", \"symbol-placement\": [\"step\", [\"zoom\"], \"point\", 9, \"line\"]"), true},
+        {LAYOUT("\"icon-image\": \"a\", \"symbol-placement\": \"point\""), false},
+        {LAYOUT("\"icon-image\": \"a\", \"symbol-placement\": \"line\", \"icon-rotation-alignment\": \"viewport\""),
+         false},
+        {LAYOUT("\"icon-image\": \"a\""), false},
+        {LAYOUT("\"text-field\": \"a\", \"symbol-placement\": \"line\""), false},
+    };
+    fixture f;
+    setup(&f);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(parse_layer(&f, cases[i].members), CAMBER_OK);
+        if (f.style->schema.labels_directed != cases[i].directed)
+            fail_msg("%s", cases[i].members);
+    }
+    teardown(&f);
+}
+
 static bool takes(fixture *f, camber_geometry_kind kind, const char *source_layer, const char *properties) {
     camber_feature_view view = view_of(f, properties);
     view.geometry_type = camber_geometry_type(kind);
@@ -755,12 +780,25 @@ static void test_memory_of_styles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),   cmocka_unit_test(test_reference), cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_layout),  cmocka_unit_test(test_paint),     cmocka_unit_test(test_alignments),
-        cmocka_unit_test(test_overlap), cmocka_unit_test(test_anchors),   cmocka_unit_test(test_writing_modes),
-        cmocka_unit_test(test_texts),   cmocka_unit_test(test_format),    cmocka_unit_test(test_images),
-        cmocka_unit_test(test_wants),   cmocka_unit_test(test_takes),     cmocka_unit_test(test_document),
-        cmocka_unit_test(test_bytes),   cmocka_unit_test(test_memory),    cmocka_unit_test(test_memory_of_styles),
+        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_paint),
+        cmocka_unit_test(test_alignments),
+        cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_anchors),
+        cmocka_unit_test(test_writing_modes),
+        cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_format),
+        cmocka_unit_test(test_images),
+        cmocka_unit_test(test_wants),
+        cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_takes),
+        cmocka_unit_test(test_document),
+        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_memory_of_styles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,6 @@
  * layer's icons come first, then the halos of all its texts, then the texts. */
 #include "map/label_shapes.h"
 
-#include "base/perspective.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -36,44 +34,31 @@ static bool begin_ring(rings *r, uint32_t row, size_t points) {
     return true;
 }
 
-/* How a picture with a pitch shows the plane in which all shapes are drawn. */
-typedef struct tilt {
-    bool pitched;
-    double x, y; /* the picture's middle */
-    double cosine, fall;
-} tilt;
-
-static tilt tilt_of(const camber_view *view) {
-    if (!(view->pitch_deg > 0.0))
-        return (tilt){0};
-    const camber_perspective p = camber_perspective_of(view->pitch_deg, view->height);
-    return (tilt){true, 0.5 * view->width, 0.5 * view->height, p.cosine, p.fall};
-}
-
-/* Moves a point of the picture to the point of the plane that is seen there. p: x and y in px. The result may be beyond
- * what the camera sees. */
-static void unproject(const tilt *t, float p[2]) {
-    const double y = (double)p[1] - t->y, away = fmax(t->cosine + t->fall * y, 1e-3);
+/* Moves a point of the picture to where the plane has it. p: x and y in px. The point may be beyond what the camera
+ * sees. */
+static void unproject(const camber_view_lens *lens, float p[2]) {
+    const camber_perspective *of = &lens->perspective;
+    const double y = (double)p[1] - lens->half_height, away = fmax(of->cosine + of->fall * y, 1e-3);
     const double plane_y = y / away;
-    p[0] = (float)(t->x + ((double)p[0] - t->x) * (1.0 - t->fall * plane_y));
-    p[1] = (float)(t->y + plane_y);
+    p[0] = (float)(lens->half_width + ((double)p[0] - lens->half_width) * (1.0 - of->fall * plane_y));
+    p[1] = (float)(lens->half_height + plane_y);
 }
 
 /* Finds the point of the plane at which the point u, v of an item is drawn. t: NULL if the item is in the plane. */
-static void find_point(const camber_label_item *item, const tilt *t, float u, float v, float p[2]) {
+static void find_point(const camber_label_item *item, const camber_view_lens *lens, float u, float v, float p[2]) {
     p[0] = item->x + item->xx * u + item->xy * v;
     p[1] = item->y + item->yx * u + item->yy * v;
-    if (t)
-        unproject(t, p);
+    if (lens)
+        unproject(lens, p);
 }
 
-static void add_point(rings *r, const camber_label_item *item, const tilt *t, float u, float v) {
-    find_point(item, t, u, v, r->points + 2 * r->point_count++);
+static void add_point(rings *r, const camber_label_item *item, const camber_view_lens *lens, float u, float v) {
+    find_point(item, lens, u, v, r->points + 2 * r->point_count++);
 }
 
 /* Adds the rings of an outline. Rings of one row form one area. */
 static camber_status add_outline(rings *r, const camber_outline *outline, const camber_label_item *item,
-                                 const tilt *t) {
+                                 const camber_view_lens *lens) {
     for (size_t i = 0; i < outline->ring_count; i++) {
         const uint32_t first = outline->offsets[i], end = outline->offsets[i + 1];
         if (end - first < 3)
@@ -82,48 +67,49 @@ static camber_status add_outline(rings *r, const camber_outline *outline, const 
             return CAMBER_ERROR_MEMORY;
         for (uint32_t k = first; k <= end; k++) {
             const float *point = outline->points + (size_t)2 * (k < end ? k : first);
-            add_point(r, item, t, point[0], point[1]);
+            add_point(r, item, lens, point[0], point[1]);
         }
     }
     return CAMBER_OK;
 }
 
-static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item, const tilt *t) {
+static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item,
+                               const camber_view_lens *lens) {
     const double size_px = fmax(hypot((double)item->xx, (double)item->yx), hypot((double)item->xy, (double)item->yy));
     camber_outline outline;
     if (!(size_px > 0.0))
         return CAMBER_OK;
     const camber_status status =
         camber_fonts_get_outline(fonts, item->glyph, (float)(TOLERANCE_PX / size_px), &outline);
-    return status == CAMBER_OK ? add_outline(r, &outline, item, t) : status;
+    return status == CAMBER_OK ? add_outline(r, &outline, item, lens) : status;
 }
 
 /* ---- Icons ---- */
 
 /* Adds the quadrangle of an icon's image, which has a border around the item's frame. */
-static camber_status add_frame(rings *r, const camber_icon_form *form, const camber_label_item *item, const tilt *t,
-                               uint32_t row) {
+static camber_status add_frame(rings *r, const camber_icon_form *form, const camber_label_item *item,
+                               const camber_view_lens *lens, uint32_t row) {
     static const float corners[][2] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 0.0f}};
     const float edge_x = 1.0f / (float)form->width, edge_y = 1.0f / (float)form->height;
     if (!begin_ring(r, row, 5))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < 5; i++) {
         const float u = corners[i][0], v = corners[i][1];
-        add_point(r, item, t, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
+        add_point(r, item, lens, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
     }
     return CAMBER_OK;
 }
 
 /* Places the image in the frame; the fill's pointer to it is set later. In a picture with a pitch, the frame is a
  * quadrangle in the plane, and the image is the rectangle with the same middle axes. */
-static void place_image(const camber_icon_form *form, const camber_label_item *item, const tilt *t,
+static void place_image(const camber_icon_form *form, const camber_label_item *item, const camber_view_lens *lens,
                         const camber_label_look *look, camber_fill *fill) {
     const float half_x = 0.5f + 1.0f / (float)form->width, half_y = 0.5f + 1.0f / (float)form->height;
     float left[2], right[2], top[2], bottom[2];
-    find_point(item, t, 0.5f - half_x, 0.5f, left);
-    find_point(item, t, 0.5f + half_x, 0.5f, right);
-    find_point(item, t, 0.5f, 0.5f - half_y, top);
-    find_point(item, t, 0.5f, 0.5f + half_y, bottom);
+    find_point(item, lens, 0.5f - half_x, 0.5f, left);
+    find_point(item, lens, 0.5f + half_x, 0.5f, right);
+    find_point(item, lens, 0.5f, 0.5f - half_y, top);
+    find_point(item, lens, 0.5f, 0.5f + half_y, bottom);
     fill->color = look->color;
     fill->width_px = hypotf(right[0] - left[0], right[1] - left[1]);
     fill->height_px = hypotf(bottom[0] - top[0], bottom[1] - top[1]);
@@ -166,31 +152,31 @@ typedef struct shape_maker {
     const camber_labels *labels;
     camber_fonts *fonts;
     camber_label_shapes *shapes;
-    tilt tilt;
+    camber_view_lens lens;
     rings texts, icons;
     size_t *form_of; /* by icon */
 } shape_maker;
 
 /* Returns NULL if the item is drawn in the plane as it is. */
-static const tilt *tilt_for(const shape_maker *m, const camber_label_item *item) {
-    return m->tilt.pitched && !m->labels->looks[item->look].flat ? &m->tilt : NULL;
+static const camber_view_lens *lens_for(const shape_maker *m, const camber_label_item *item) {
+    return m->lens.pitched && !m->labels->looks[item->look].flat ? &m->lens : NULL;
 }
 
 static camber_status add_icon(shape_maker *m, const camber_label_item *item, camber_label_range *range) {
     camber_label_shapes *s = m->shapes;
-    const tilt *t = tilt_for(m, item);
+    const camber_view_lens *lens = lens_for(m, item);
     size_t *form = m->form_of + s->icon_count;
     camber_status status = camber_icon_forms_find(&s->forms, item, form);
     if (status != CAMBER_OK)
         return status;
     if (item->icon->sdf) {
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
-        return add_outline(&m->texts, &s->forms.forms[*form].outline, item, t);
+        return add_outline(&m->texts, &s->forms.forms[*form].outline, item, lens);
     }
     camber_fill *fill = s->fills + s->look_count + s->icon_count;
-    place_image(s->forms.forms + *form, item, t, m->labels->looks + item->look, fill);
+    place_image(s->forms.forms + *form, item, lens, m->labels->looks + item->look, fill);
     s->paints[s->look_count + s->icon_count].fill = fill;
-    return add_frame(&m->icons, s->forms.forms + *form, item, t, (uint32_t)s->icon_count++);
+    return add_frame(&m->icons, s->forms.forms + *form, item, lens, (uint32_t)s->icon_count++);
 }
 
 static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) {
@@ -208,7 +194,7 @@ static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) 
             continue;
         }
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
-        status = add_glyph(&m->texts, m->fonts, item, tilt_for(m, item));
+        status = add_glyph(&m->texts, m->fonts, item, lens_for(m, item));
     }
     range->icon_count = m->icons.ring_count - range->first_icon;
     range->ring_count = m->texts.ring_count - range->first_ring;
@@ -249,7 +235,7 @@ camber_status camber_label_shapes_make(const camber_labels *labels, const camber
     shape_maker m = {.labels = labels,
                      .fonts = fonts,
                      .shapes = shapes,
-                     .tilt = tilt_of(view),
+                     .lens = camber_view_lens_of(view),
                      .texts = {.context = labels->context},
                      .icons = {.context = labels->context}};
     *shapes = (camber_label_shapes){0};

@@ -19,7 +19,7 @@ void fuzz_check_areas(const camber_features *features) {
 
 static bool takes_all(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                       const camber_feature_view *feature) {
-    REQUIRE(style && source_layer && feature->geometry_type == camber_geometry_type(kind));
+    REQUIRE(style && source_layer && strcmp(feature->geometry_type, camber_geometry_type(kind)) == 0);
     return true;
 }
 

@@ -114,7 +114,7 @@ set(label_layout_garden "\"text-max-width\": 7, ")
 # A symbol stands where the thing is, and its name at the side that has space; if no side has, the symbol is alone.
 set(label_beside "\"text-variable-anchor\": [\"top\", \"bottom\", \"left\", \"right\"], \"text-justify\": \"auto\",
                 \"text-optional\": true, \"text-max-width\": 8, ")
-set(label_layout_halt "\"icon-image\": \"dot\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 14, 0.5, 18, 0.75],
+set(label_layout_halt "\"text-padding\": 12, \"icon-image\": \"dot\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 14, 0.5, 18, 0.75],
                 \"text-radial-offset\": 0.55, ${label_beside}")
 set(label_layout_station "\"icon-image\": \"square\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 12, 0.55, 17, 0.9],
                 \"text-radial-offset\": 0.6, ${label_beside}")
@@ -153,7 +153,7 @@ set(label_dark_shield_text  "#15110b" "#dfb27c" "#c0b69f")
 
 # The texts of kinds whose labels have more than the name, or something else. A road may have several numbers, of which
 # the first is shown.
-set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"FULLNAME\"]]")
+set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"name:latin\"], [\"get\", \"FULLNAME\"]]")
 set(label_text_house "[\"coalesce\", [\"get\", \"addr:housenumber\"], [\"get\", \"housenumber\"], [\"get\", \"addr_housenumber\"]]")
 set(label_text_peak "[\"case\", [\">\", [\"to-number\", [\"get\", \"ele\"], 0], 0], [\"format\", ${label_name}, {},
                 [\"concat\", \"\\n\", [\"to-string\", [\"round\", [\"to-number\", [\"get\", \"ele\"], 0]]], \" m\"], {\"font-scale\": 0.88}], ${label_name}]")
@@ -363,7 +363,7 @@ macro(label_tile_layer out theme kind layer)
   if(DEFINED label_test_${kind}_${layer})
     set(filter "[\"all\", ${label_test_${kind}_${layer}}, ${filter}]")
   endif()
-  set(head " \"source-layer\": \"${layer}\",")
+  set(head "${tile_source} \"source-layer\": \"${layer}\",")
   if(NOT "${filter}" STREQUAL "")
     string(APPEND head "\n     \"filter\": ${filter},")
   endif()
@@ -374,7 +374,7 @@ endmacro()
 # tiles: OFF leaves out the layers for tiles.
 function(label_layers out theme tiles)
   foreach(kind IN LISTS ARGN)
-    if(DEFINED label_osm_${kind})
+    if(DEFINED label_osm_${kind} AND with_osm)
       set(filter "${label_osm_${kind}}")
       if(tiles)
         set(filter "[\"all\", ${city_no_schema}, ${filter}]")

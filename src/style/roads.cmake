@@ -103,13 +103,13 @@ foreach(theme light dark)
   set(${theme}_link1 ${${theme}_primary})
 endforeach()
 
-# What a schema calls its roads: the class, and the tests for tunnels, bridges, ramps and sidewalks. OpenStreetMap's
+# The words of a schema for its roads: the class, and the tests for tunnels, bridges, ramps and sidewalks. OpenStreetMap's
 # values are "yes" or a kind of bridge or tunnel, and 0 or 1 in vector tiles. A bridge with a roof counts as a tunnel.
 # road_levels: how many levels of bridges there are. osm_is_ramp: empty, because its links have classes of their own.
-set(no "[\"\", \"0\", \"no\", \"false\"]")
+set(road_no "[\"\", \"0\", \"no\", \"false\"]")
 set(osm_class [=[["coalesce", ["get", "highway"], ["get", "type"], ["get", "MTFCC"]]]=])
-set(osm_tunnel "[\"match\", [\"to-string\", [\"get\", \"tunnel\"]], ${no}, false, true]")
-set(osm_bridge "[\"all\", [\"match\", [\"to-string\", [\"get\", \"bridge\"]], ${no}, false, true], [\"!\", ${osm_tunnel}]]")
+set(osm_tunnel "[\"match\", [\"to-string\", [\"get\", \"tunnel\"]], ${road_no}, false, true]")
+set(osm_bridge "[\"all\", [\"match\", [\"to-string\", [\"get\", \"bridge\"]], ${road_no}, false, true], [\"!\", ${osm_tunnel}]]")
 set(osm_is_ramp "")
 set(osm_way [=[["match", ["get", "footway"], ["sidewalk", "crossing", "traffic_island", "link"], "sidewalk", ["coalesce", ["get", "highway"], ["get", "type"], ["get", "MTFCC"]]]]=])
 set(osm_levels 3)
@@ -364,7 +364,7 @@ function(plain_lines out what filter more)
   set(${out} "${${out}}${layer}" PARENT_SCOPE)
 endfunction()
 
-# Writes NAME-THEME.json into the folder: a background, followed by the layers.
+# Writes NAME-THEME.json into the folder: a background, followed by the layers. METADATA, SOURCES: other members.
 function(road_document NAME THEME LAYERS folder)
   set(PAPER ${${THEME}_paper})
   set(PLAIN_COLOR ${${THEME}_plain})
@@ -375,6 +375,7 @@ endfunction()
 function(road_style theme folder)
   set(layers "")
   set(HEAD "")
+  set(with_osm ON)
   append_network(layers ${theme} osm "" "")
   plain_lines(layers line "[\"==\", [\"geometry-type\"], \"LineString\"]" 0)
   label_layers(layers ${theme} OFF street_small street street_main shield)

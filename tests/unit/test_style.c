@@ -87,7 +87,7 @@ static void set_values(const camber_style *style, const feature *road, camber_va
         {"tunnel", text_value(road->tunnel)},   {"name", text_value(NULL)},
         {"FULLNAME", text_value(NULL)},         {"ref", text_value(NULL)},
         {"shield_text", text_value(NULL)},      {"layer", text_value(road->layer)},
-        {"footway", text_value(road->footway)},
+        {"footway", text_value(road->footway)}, {"name:latin", text_value(NULL)},
     };
     assert_in_range(style->schema.property_count, 1, PROPERTY_LIMIT);
     for (size_t i = 0; i < style->schema.property_count; i++) {
@@ -454,7 +454,7 @@ static void check_city(const camber_style *style) {
         {"transportation", "class=path", "tiles-transportation-ground-path"},
         {"transportation", "class=path subclass=steps", "tiles-transportation-ground-path"},
         {"transportation", "class=ferry", "tiles-transportation-ferry-line"},
-        {"transportation", "class=ferry_construction", ""},
+        {"transportation", "class=primary_construction", "tiles-transportation-works-line"},
         {"water", "kind=river", "tiles-water-river"},
         {"water", "kind=reef", ""},
         {"roads", "kind=highway kind_detail=motorway", "tiles-roads-ground-casing tiles-roads-ground-fill"},

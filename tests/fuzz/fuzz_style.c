@@ -81,7 +81,7 @@ static void check_layers(const camber_style *style, const camber_features *featu
         for (size_t c = 0; c < features->class_count; c++) {
             const camber_feature_view feature = {
                 .values = features->values ? features->values + features->classes[c].first_value : NULL,
-                .geometry_type = features->classes[c].geometry ? "Polygon" : "LineString",
+                .geometry_type = camber_geometry_type(features->classes[c].geometry),
                 .id = c % 2 ? numbers[c / 2 % 2] : (camber_value){0},
                 .all = c % 3 ? &all_properties : NULL};
             for (size_t z = 0; z < sizeof zooms / sizeof *zooms; z++) {

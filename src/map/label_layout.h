@@ -171,9 +171,6 @@ camber_status camber_label_track_find(const camber_label_layout *layout, const c
                                       camber_label_track *track, bool *fits);
 /* Returns the point at a distance. */
 camber_track_point camber_label_track_point(const camber_label_track *track, double distance);
-/* Returns the distance of the middle of the cluster that begins with glyph first, in em; the cluster is turned about
- * it. *end is the cluster's end. */
-double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end);
 
 /* ---- Placement and items ---- */
 

@@ -38,8 +38,7 @@ static bool circles_meet(const camber_obstacle *a, const camber_obstacle *b) {
 }
 
 static bool circle_meets_box(const camber_obstacle *circle, const camber_obstacle *box) {
-    const double x = 0.5 * (circle->x0 + circle->x1),
-                 y = 0.5 * (circle->y0 + circle->y1);
+    const double x = 0.5 * (circle->x0 + circle->x1), y = 0.5 * (circle->y0 + circle->y1);
     const double dx = x - fmin(fmax(x, box->x0), box->x1);
     const double dy = y - fmin(fmax(y, box->y0), box->y1);
     return dx * dx + dy * dy <= circle->radius * circle->radius;
@@ -70,16 +69,14 @@ static size_t cell_of(double offset, double cell, size_t count) {
 }
 
 static cell_range cells_of(const camber_collision *c, const camber_obstacle *shape) {
-    return (cell_range){cell_of(shape->x0 - c->bounds.x0, c->cell, c->columns),
-                        cell_of(shape->y0 - c->bounds.y0, c->cell, c->rows),
-                        cell_of(shape->x1 - c->bounds.x0, c->cell, c->columns),
-                        cell_of(shape->y1 - c->bounds.y0, c->cell, c->rows)};
+    return (cell_range){
+        cell_of(shape->x0 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y0 - c->bounds.y0, c->cell, c->rows),
+        cell_of(shape->x1 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y1 - c->bounds.y0, c->cell, c->rows)};
 }
 
 bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape) {
     const camber_box *b = &collision->bounds;
-    return shape->x1 >= b->x0 && shape->x0 < b->x1 && shape->y1 >= b->y0 &&
-           shape->y0 < b->y1;
+    return shape->x1 >= b->x0 && shape->x0 < b->x1 && shape->y1 >= b->y0 && shape->y0 < b->y1;
 }
 
 bool camber_collision_hits(const camber_collision *collision, const camber_obstacle *shape,

@@ -234,9 +234,9 @@ static camber_status add_label(item_maker *m, const camber_label_candidate *c) {
     camber_box box = c->box;
     const camber_label_window *window = m->layout->window;
     if (window)
-        box = (camber_box){
-            box.x0 * window->scale - window->origin_px[0], box.y0 * window->scale - window->origin_px[1],
-            box.x1 * window->scale - window->origin_px[0], box.y1 * window->scale - window->origin_px[1]};
+        box =
+            (camber_box){box.x0 * window->scale - window->origin_px[0], box.y0 * window->scale - window->origin_px[1],
+                         box.x1 * window->scale - window->origin_px[0], box.y1 * window->scale - window->origin_px[1]};
     l->labels[l->label_count++] = (camber_label){c->feature, box};
     return CAMBER_OK;
 }

@@ -113,7 +113,8 @@ static camber_status add_candidate(layout_maker *m, const camber_label_thing *t,
 
 static bool is_kept(const layout_maker *m, size_t i, size_t first, size_t end) {
     const camber_features *f = m->layout->features;
-    return (i == first || i + 1 == end || !f->importance || !((double)f->importance[i] < m->layout->least_importance)) &&
+    return (i == first || i + 1 == end || !f->importance ||
+            !((double)f->importance[i] < m->layout->least_importance)) &&
            is_finite(f->points + 2 * i);
 }
 
@@ -463,8 +464,7 @@ camber_box camber_label_seen(const camber_view *view) {
 
 camber_status camber_label_layout_make(camber_label_layout *layout) {
     const double zoom = camber_view_style_zoom(layout->view);
-    layout_maker m = {
-        .layout = layout, .corners = find_corners(layout->view), .anchors.context = layout->context};
+    layout_maker m = {.layout = layout, .corners = find_corners(layout->view), .anchors.context = layout->context};
     camber_status status = CAMBER_OK;
     layout->lens = camber_view_lens_of(layout->view);
     set_reach(&m, REACH_PX * layout->view->ratio);

@@ -58,8 +58,8 @@ typedef struct camber_label_line {
 } camber_label_line;
 
 /* The part of the map for which labels are placed, whatever view may show them. Then px are counted from the world's
- * north-west corner. Anchors and shapes are multiples of CAMBER_LABEL_STEP_PX, and whatever else is computed for a label
- * is relative to its anchor. So a label is the same in every part of the map, and in every copy of the world. */
+ * north-west corner. Anchors and shapes are multiples of CAMBER_LABEL_STEP_PX, and whatever else is computed for a
+ * label is relative to its anchor. So a label is the same in every part of the map, and in every copy of the world. */
 typedef struct camber_label_domain {
     camber_box known; /* px: all anchors inside it are known; outside there may be others */
     bool whole;       /* there are no others: known is the world, whose eastern edge is next to its western one */

@@ -1,7 +1,7 @@
 /* Finds the things that labels may name.
  *
- * Input: features. Output: their lines, areas and points that are there for labels, with boxes, sorted by class, because
- * all features of a class have the same texts and icons. */
+ * Input: features. Output: their lines, areas and points that are there for labels, with boxes, sorted by class,
+ * because all features of a class have the same texts and icons. */
 #include "map/label_things.h"
 
 #include <math.h>

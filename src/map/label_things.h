@@ -22,8 +22,8 @@ typedef struct camber_label_things {
 } camber_label_things;
 
 /* Finds the things of a set. Points may be dropped from the set later (camber_features_thin), but no features may be
- * added. seen: things that touch it in none of the three nearest copies of the world are left out; NULL: all are wanted.
- * Call camber_label_things_free even after a failure. Returns CAMBER_ERROR_MEMORY. */
+ * added. seen: things that touch it in none of the three nearest copies of the world are left out; NULL: all are
+ * wanted. Call camber_label_things_free even after a failure. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_label_things_find(const camber_features *features, const camber_box *seen,
                                        camber_label_things *things);
 /* Selects the things that touch a box. Call camber_label_things_free even after a failure. Returns

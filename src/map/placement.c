@@ -96,9 +96,8 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
             order = c->feature;
         const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;
         const camber_label_form *form = layout->forms + c->form;
-        list[i] = (ordered){c,
-                            {by_key ? form->sort_key : 0.0, order, form->weight},
-                            camber_label_rule_of(layout, c)->hash};
+        list[i] =
+            (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}, camber_label_rule_of(layout, c)->hash};
     }
     if (list)
         qsort(list, layer->candidate_count, sizeof *list, compare);
@@ -179,8 +178,8 @@ static bool is_repeated(placer *p, const camber_label_candidate *c, double dista
     const uint64_t words = p->layout->forms[c->form].hash;
     if (is_said_near(&p->said, words, c->x, c->y, distance))
         return true;
-    p->in_doubt |= is_exposed(p, c->x, c->y, c->x, c->y, distance) ||
-                   is_said_near(&p->doubtful, words, c->x, c->y, distance);
+    p->in_doubt |=
+        is_exposed(p, c->x, c->y, c->x, c->y, distance) || is_said_near(&p->doubtful, words, c->x, c->y, distance);
     return false;
 }
 
@@ -224,7 +223,8 @@ static bool is_free(placer *p, size_t first, camber_symbol_overlap overlap, bool
     return held;
 }
 
-/* Adds a shape of a candidate's label. In a domain it is relative to the anchor. *added is false if it is not allowed. */
+/* Adds a shape of a candidate's label. In a domain it is relative to the anchor. *added is false if it is not allowed.
+ */
 static camber_status put_shape(placer *p, const camber_label_candidate *c, camber_obstacle shape, bool *added) {
     if (p->domain) {
         shape = (camber_obstacle){camber_label_snap(shape.x0), camber_label_snap(shape.y0), camber_label_snap(shape.x1),

@@ -47,8 +47,8 @@ camber_status camber_zoom_labels_create(const camber_zoom_labels_desc *desc, cam
         return CAMBER_ERROR_MEMORY;
     made->context = desc->features->context;
     made->desc = *desc;
-    made->view = (camber_view){
-        .zoom = desc->zoom, .scale_px = WORLD_PX * exp2(desc->zoom), .cosine = 1.0, .ratio = 1.0};
+    made->view =
+        (camber_view){.zoom = desc->zoom, .scale_px = WORLD_PX * exp2(desc->zoom), .cosine = 1.0, .ratio = 1.0};
     *labels = made;
     return CAMBER_OK;
 }
@@ -89,8 +89,8 @@ static camber_box widen(const camber_box *box, double by) {
     return (camber_box){box->x0 - by, box->y0 - by, box->x1 + by, box->y1 + by};
 }
 
-/* Returns in which copies of the world a label touches a box, as bits: bit i for the copy that is moved by i - 1. If the
- * domain is not the whole world, each copy is a label by itself. */
+/* Returns in which copies of the world a label touches a box, as bits: bit i for the copy that is moved by i - 1. If
+ * the domain is not the whole world, each copy is a label by itself. */
 static unsigned find_copies(const label_block *block, const camber_box *label, const camber_box *box) {
     unsigned copies = 0;
     for (int i = 0; i < 3; i++) {
@@ -128,7 +128,8 @@ static double find_overhang(camber_fonts *fonts, const camber_text *text, bool a
 
 static double find_halo(const camber_symbol_part *part) {
     return fmax(part->halo_width_px, 0.0) + BLUR_SCALE * fmax(part->halo_blur_px, 0.0) -
-           fmin(fmin(part->padding_px[0], part->padding_px[1]), fmin(fmin(part->padding_px[2], part->padding_px[3]), 0));
+           fmin(fmin(part->padding_px[0], part->padding_px[1]),
+                fmin(fmin(part->padding_px[2], part->padding_px[3]), 0));
 }
 
 /* Returns a box around the pixels that a label draws. */
@@ -182,15 +183,15 @@ static camber_status place_with_margin(camber_zoom_labels *z, label_block *block
         }
     }
     camber_label_layout_free(&block->layout);
-    block->layout = (camber_label_layout){
-        .context = z->context,
-        .features = z->desc.features,
-        .view = &z->view,
-        .things = block->domain.whole ? z->desc.things : &near,
-        .domain = &block->domain,
-        .least_importance = (double)(float)fmax(SIMPLIFY_PX / world, z->desc.least_importance),
-        .fonts = z->desc.features->fonts,
-        .sprites = z->desc.features->sprites};
+    block->layout =
+        (camber_label_layout){.context = z->context,
+                              .features = z->desc.features,
+                              .view = &z->view,
+                              .things = block->domain.whole ? z->desc.things : &near,
+                              .domain = &block->domain,
+                              .least_importance = (double)(float)fmax(SIMPLIFY_PX / world, z->desc.least_importance),
+                              .fonts = z->desc.features->fonts,
+                              .sprites = z->desc.features->sprites};
     camber_status status = camber_label_layout_make(&block->layout);
     if (status == CAMBER_OK)
         status = camber_label_place_all(&block->layout);
@@ -444,15 +445,14 @@ camber_status camber_zoom_labels_draw(camber_zoom_labels *z, const camber_label_
 /* Hashes everything that a label's pixels depend on. Of its line only the points near it matter. */
 static uint64_t hash_label(const camber_label_layout *l, const camber_label_candidate *c) {
     const camber_label_form *form = l->forms + c->form;
-    const uint64_t shows = (uint64_t)c->shows_text | (uint64_t)c->shows_icon << 1 | (uint64_t)c->vertical << 2 |
-                           (uint64_t)c->anchor << 8;
+    const uint64_t shows =
+        (uint64_t)c->shows_text | (uint64_t)c->shows_icon << 1 | (uint64_t)c->vertical << 2 | (uint64_t)c->anchor << 8;
     uint64_t hash = camber_mix(camber_mix(c->rank, l->rules[form->rule].hash), shows);
     if (c->line == CAMBER_NO_PATH)
         return hash;
     const camber_label_line *line = l->lines + c->line;
     for (size_t i = line->first; i < line->first + line->count; i++) {
-        const double at[2] = {c->line_x + (double)l->line_points[2 * i],
-                              c->line_y + (double)l->line_points[2 * i + 1]};
+        const double at[2] = {c->line_x + (double)l->line_points[2 * i], c->line_y + (double)l->line_points[2 * i + 1]};
         if (fabs(at[0]) < CAMBER_LABEL_REACH_PX && fabs(at[1]) < CAMBER_LABEL_REACH_PX)
             hash = camber_mix_point(hash, at);
     }

@@ -2,9 +2,9 @@
  * of the same labels.
  *
  * Labels are placed in blocks, squares of the map that are divided until few things are in each. A block is placed
- * together with its surroundings, as far as labels there may matter to those in the block (label_layout.h, placement.c).
- * So the result depends neither on the blocks nor on their order. Labels are placed in CSS px, so pictures of any ratio
- * have the same ones. */
+ * together with its surroundings, as far as labels there may matter to those in the block (label_layout.h,
+ * placement.c). So the result depends neither on the blocks nor on their order. Labels are placed in CSS px, so
+ * pictures of any ratio have the same ones. */
 #ifndef CAMBER_MAP_ZOOM_LABELS_H
 #define CAMBER_MAP_ZOOM_LABELS_H
 

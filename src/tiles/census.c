@@ -421,7 +421,8 @@ camber_status camber_census_touch(camber_census *census, const camber_touched_ti
     census->metatile_count = at + added;
     while (at + added > 0) {
         const camber_metatile *last = at ? census->metatiles + at - 1 : NULL;
-        const bool own = last && (!added || camber_pmtiles_number(zoom, last->column, last->row) > more[added - 1].points);
+        const bool own =
+            last && (!added || camber_pmtiles_number(zoom, last->column, last->row) > more[added - 1].points);
         camber_metatile *to = all + (at + added - 1);
         *to = own ? *last : more[added - 1];
         if (own) {

@@ -250,8 +250,8 @@ static camber_status tessellate(camber_tiles_engine *engine, const camber_metati
     const camber_view window = window_of(zoom->plan, picture);
     const double start_ms = camber_now_ms();
     camber_window_labels labels = {
-        .square = camber_engine_square(engine, picture->zoom, picture->column / picture->side,
-                                       picture->row / picture->side)};
+        .square =
+            camber_engine_square(engine, picture->zoom, picture->column / picture->side, picture->row / picture->side)};
     camber_status status = camber_engine_get_labels(engine, picture->zoom, &labels.labels);
     if (status == CAMBER_OK)
         status = camber_scene_create_window(zoom->plan, &window, &labels,

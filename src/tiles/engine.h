@@ -9,9 +9,9 @@
 #include "tiles/mesh_tile.h"
 
 typedef struct camber_engine_zoom {
-    camber_zoom_plan *plan; /* NULL: not evaluated yet */
-    camber_mesh_plan *mesh; /* if tiles are meshes: the mesh plan, which owns plan. NULL: tiles are pictures */
-    camber_census census;   /* context is NULL until it is made */
+    camber_zoom_plan *plan;     /* NULL: not evaluated yet */
+    camber_mesh_plan *mesh;     /* if tiles are meshes: the mesh plan, which owns plan. NULL: tiles are pictures */
+    camber_census census;       /* context is NULL until it is made */
     camber_zoom_labels *labels; /* NULL: none, or not yet */
     bool has_background;
     uint8_t background[4];
@@ -41,8 +41,8 @@ double camber_engine_tile_px(const camber_tiles_engine_desc *desc);
 camber_zoom_desc camber_engine_zoom_desc(const camber_tiles_engine_desc *desc, int zoom);
 /* Returns how many tiles a picture has on a side. For archives, a metatile of the census has the same size. */
 uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom);
-/* Finds the labels of a zoom whose plan has been evaluated; NULL if no fonts were read with the features, or if tiles are
- * meshes (label_tiles.c). */
+/* Finds the labels of a zoom whose plan has been evaluated; NULL if no fonts were read with the features, or if tiles
+ * are meshes (label_tiles.c). */
 camber_status camber_engine_get_labels(camber_tiles_engine *engine, int zoom, camber_zoom_labels **labels);
 /* Returns the square of the map that a metatile shows. */
 camber_label_square camber_engine_square(const camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row);

@@ -8,15 +8,15 @@
 enum { ZOOM = 4, TILE = 256, TILES = 32, TILE_LEVEL = 5, ALL_LEVEL = 2, SHOWN = 8 };
 
 #define HALOED(id, layout)                                                                                             \
-    "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"text-field\":[\"get\",\"name\"]," layout                       \
+    "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"text-field\":[\"get\",\"name\"]," layout                     \
     "},\"paint\":{\"text-halo-width\":2,\"text-halo-color\":\"#fff\"}}"
 
 static const char EVERYTHING[] = NAMES("streets", "\"symbol-placement\":\"line\",\"text-size\":11,"
                                                   "\"symbol-spacing\":150") "," //
     ICONS("icons", "\"icon-padding\":1") ","                                    //
-    NAMES("lakes", "\"text-size\":9,\"text-overlap\":\"cooperative\"") ","
-    HALOED("places", "\"text-variable-anchor\":[\"left\",\"right\",\"top\",\"bottom\"],\"text-radial-offset\":0.4,"
-                    "\"text-size\":12,\"text-justify\":\"auto\",\"icon-image\":\"box\",\"icon-optional\":true");
+    NAMES("lakes", "\"text-size\":9,\"text-overlap\":\"cooperative\"") "," HALOED(
+        "places", "\"text-variable-anchor\":[\"left\",\"right\",\"top\",\"bottom\"],\"text-radial-offset\":0.4,"
+                  "\"text-size\":12,\"text-justify\":\"auto\",\"icon-image\":\"box\",\"icon-optional\":true");
 
 /* Points and lines, so many that few of their labels find room. about: px of the town. */
 static void add_crowd(town *t, uint32_t seed, double about_x, double about_y, bool backwards) {
@@ -144,8 +144,7 @@ static void compare_tile(const camber_labels *whole, const camber_labels *tile, 
         size_t found = 0, at = 0;
         expected++;
         for (size_t b = 0; b < tile->label_count; b++)
-            if (whole->labels[a].feature == tile->labels[b].feature &&
-                is_same_box(box, &tile->labels[b].box, dx, dy)) {
+            if (whole->labels[a].feature == tile->labels[b].feature && is_same_box(box, &tile->labels[b].box, dx, dy)) {
                 at = b;
                 found++;
             }
@@ -198,7 +197,8 @@ static void test_tiles(void **state) {
  * meet there only one is shown, whether the world is placed as a whole or in small blocks. */
 static void test_seam(void **state) {
     (void)state;
-    town *t = open_town(NAMES("names", "\"text-size\":14,\"symbol-sort-key\":[\"match\",[\"get\",\"name\"],\"First\",0,1]"));
+    town *t =
+        open_town(NAMES("names", "\"text-size\":14,\"symbol-sort-key\":[\"match\",[\"get\",\"name\"],\"First\",0,1]"));
     add_point(t, "First", 1023.5, 400.0);
     add_point(t, "Second", 1.0, 400.0);
     add_point(t, "Third", 1023.0, 410.0);
@@ -379,9 +379,9 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tiles),    cmocka_unit_test(test_seam),  cmocka_unit_test(test_crowded_seam),
-        cmocka_unit_test(test_shuffled), cmocka_unit_test(test_ratio), cmocka_unit_test(test_too_long),
-        cmocka_unit_test(test_list),     cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_tiles),        cmocka_unit_test(test_seam),
+                                       cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled),
+                                       cmocka_unit_test(test_ratio),        cmocka_unit_test(test_too_long),
+                                       cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

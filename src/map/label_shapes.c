@@ -42,10 +42,18 @@ static void unproject(const camber_view_lens *lens, float p[2]) {
     p[1] = (float)(lens->half_height + plane_y);
 }
 
-/* Finds the point of the plane at which the point u, v of an item is drawn. t: NULL if the item is in the plane. */
+/* Distances from an item's origin are multiples of 1 / STEPS px, so that its points are the same in all pictures that
+ * are whole px apart: floats hold such positions exactly, up to 4096 px. */
+static const float STEPS = 4096.0f;
+
+static float snap(float px) {
+    return fabsf(px) < 2048.0f ? floorf(px * STEPS + 0.5f) / STEPS : px;
+}
+
+/* Finds the point of the plane at which the point u, v of an item is drawn. lens: NULL if the item is in the plane. */
 static void find_point(const camber_label_item *item, const camber_view_lens *lens, float u, float v, float p[2]) {
-    p[0] = item->x + item->xx * u + item->xy * v;
-    p[1] = item->y + item->yx * u + item->yy * v;
+    p[0] = item->x + snap(item->xx * u + item->xy * v);
+    p[1] = item->y + snap(item->yx * u + item->yy * v);
     if (lens)
         unproject(lens, p);
 }

@@ -33,10 +33,18 @@ static bool begin_ring(rings *r, uint32_t row, size_t points) {
     return true;
 }
 
+/* Distances from an item's origin are multiples of 1 / STEPS px, so that its points are the same in all pictures that
+ * are whole px apart: floats hold such positions exactly, up to 4096 px. */
+static const float STEPS = 4096.0f;
+
+static float snap(float px) {
+    return fabsf(px) < 2048.0f ? floorf(px * STEPS + 0.5f) / STEPS : px;
+}
+
 /* Finds the point at which the point u, v of an item is drawn. */
 static void find_point(const camber_label_item *item, float u, float v, float p[2]) {
-    p[0] = item->x + item->xx * u + item->xy * v;
-    p[1] = item->y + item->yx * u + item->yy * v;
+    p[0] = item->x + snap(item->xx * u + item->xy * v);
+    p[1] = item->y + snap(item->yx * u + item->yy * v);
 }
 
 static void add_point(rings *r, const camber_label_item *item, float u, float v) {

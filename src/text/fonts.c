@@ -153,6 +153,23 @@ static camber_status fill_index(camber_fonts *fonts) {
     return fonts->is_filled ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
+camber_status camber_fonts_list(camber_fonts *fonts, size_t n, camber_font_info *info) {
+    const camber_status status = fill_index(fonts);
+    if (status)
+        return status;
+    *info = (camber_font_info){0};
+    if (n >= fonts->index.count)
+        return CAMBER_OK;
+    const camber_font_entry *entry = &fonts->index.entries[n];
+    const char *name = entry->name ? entry->name : camber_font_pattern_name(entry->pattern);
+    *info = (camber_font_info){.name = name && *name ? name : entry->path,
+                               .path = entry->origin == CAMBER_FONT_SHIPPED ? NULL : entry->path,
+                               .weight = entry->style.weight,
+                               .width = entry->style.width,
+                               .italic = entry->style.is_italic};
+    return CAMBER_OK;
+}
+
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code) {
     return source->face ? camber_face_has(source->face, code) : camber_glyph_ranges_has(source->ranges, code);
 }

@@ -143,8 +143,19 @@ static bool is_in(const camber_box *box, double x, double y) {
     return x >= box->x0 && x <= box->x1 && y >= box->y0 && y <= box->y1;
 }
 
+/* Returns the turn in which an anchor of a line is tried, in the upper 6 bits: the first anchor before all others, then
+ * every other one of those that are left. If anchors are too close for all of their labels, those that are shown are
+ * evenly spaced, wherever the view begins. */
+static uint64_t turn_of(double number) {
+    uint64_t turn = 0;
+    if (number >= 1.0 && number < 4294967296.0)
+        for (turn = 32; fmod(number, 2.0) == 0.0; turn--)
+            number /= 2.0;
+    return turn << 58;
+}
+
 /* Adds a candidate with the current class's form at a point of the world, if the point is near enough to what is seen.
- * on_line: has the line and the segment that the candidate is on. NULL: it is on no line. */
+ * on_line: has the line and the segment that the candidate is on, and its turn. NULL: it is on no line. */
 static camber_status add_candidate(layout_maker *m, const thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
@@ -160,6 +171,8 @@ static camber_status add_candidate(layout_maker *m, const thing *t, const double
     made.x = px[0];
     made.y = px[1];
     made.rank = camber_mix(camber_mix_point(0, world), l->forms[m->form].hash);
+    if (on_line)
+        made.rank = on_line->rank | made.rank >> 6;
     if (!camber_grow(l->context, &l->candidates, &l->candidate_capacity, l->candidate_count + 1, sizeof *l->candidates))
         return CAMBER_ERROR_MEMORY;
     l->candidates[l->candidate_count++] = made;
@@ -296,6 +309,7 @@ static camber_status anchor_line(layout_maker *m, const thing *t, size_t polylin
             camber_path_point(&m->path, m->anchors.items + i, point);
             const double place[2] = {m->origin[0] + point[0] / scale, m->origin[1] + point[1] / scale};
             on_line.segment = (uint32_t)m->anchors.items[i].segment;
+            on_line.rank = turn_of(m->anchors.items[i].number);
             status = add_candidate(m, t, place, shift, &on_line);
         }
     }

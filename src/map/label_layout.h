@@ -60,7 +60,7 @@ typedef struct camber_label_candidate {
     uint32_t form, feature;
     uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it is on */
     double x, y;            /* of the anchor, px of the plane */
-    uint64_t rank;          /* decides between equal candidates: a hash of its position and words */
+    uint64_t rank; /* decides between equal candidates: its turn on its line, then a hash of its position and words */
     /* Placement fills these in. */
     bool shows_text, shows_icon, vertical;
     uint8_t anchor; /* which of the rule's anchors */

@@ -1,8 +1,9 @@
 /* Decides which labels are shown.
  *
  * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
- * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
- * Each label in turn takes up its shapes in the picture, unless earlier labels are in the way. */
+ * the order is by sort key, by rank, by turn on a line, then by a hash of place and words, so that the order of the
+ * input does not matter. Each label in turn takes up its shapes in the picture, unless earlier labels are in the way.
+ */
 #include "map/collision.h"
 #include "map/label_layout.h"
 

@@ -511,6 +511,26 @@ static void test_icon(void **state) {
     close_town(t);
 }
 
+/* Icons that are too close to each other are left out evenly, wherever the view begins. */
+static void test_icons_along(void **state) {
+    (void)state;
+    const double px[] = {10.0, 500.0, 1014.0, 500.0};
+    town *t = open_town(ICONS("icons", "\"symbol-placement\":\"line\",\"symbol-spacing\":9"));
+    double origin = NAN;
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "", px, 2);
+    for (uint32_t width = 500; width <= 900; width += 90) {
+        see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.0, .width = width, .height = 512});
+        camber_labels labels = place(t);
+        assert_near((double)labels.item_count, width / 18.0, 1.5);
+        if (isnan(origin))
+            origin = (double)labels.items[0].x - 0.5 * width;
+        for (size_t i = 0; i < labels.item_count; i++)
+            assert_near(remainder((double)labels.items[i].x - 0.5 * width - origin, 18.0), 0.0, 0.01);
+        camber_labels_free(&labels);
+    }
+    close_town(t);
+}
+
 static void test_text_fit(void **state) {
     (void)state;
     town *t = open_town(NAMES("shields", "\"icon-image\":\"frame\",\"icon-text-fit\":\"both\",\"text-size\":20,"
@@ -715,6 +735,7 @@ int main(void) {
         cmocka_unit_test(test_line_spacing),
         cmocka_unit_test(test_line_does_not_depend_on_view),
         cmocka_unit_test(test_icon),
+        cmocka_unit_test(test_icons_along),
         cmocka_unit_test(test_text_fit),
         cmocka_unit_test(test_optional),
         cmocka_unit_test(test_pitch),

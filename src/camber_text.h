@@ -1,7 +1,7 @@
 /* camber_text.h shapes text: from UTF-8 and the names of fonts to glyphs, their places and their outlines.
  *
  *     runs of text -> camber_text_shape -> glyphs of lines -> camber_text_rings_add -> rings in px, for a mesh
- *                                                          -> camber_fonts_get_outline -> rings in em
+ *                                                          -> camber_fonts_get_sized_outline -> rings in em
  *
  * It is part of libcamber-map. HarfBuzz shapes the text, FriBidi orders text that mixes both directions, and lines
  * break by the rules of the MapLibre style specification. Errors, ownership and threads are as in camber.h: fonts
@@ -83,6 +83,13 @@ typedef struct camber_outline {
  * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (an outline of more than 2^20 points). */
 CAMBER_API camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
                                                   camber_outline *outline);
+
+/* Returns a glyph's outline as camber draws it in a text of size_px device px per em, which is above 0. Its segments are
+ * at most 1/32 px away from its curves. Below 20 px, strokes are 0.2 px * (1 - size_px / 20) wider than in the font, so
+ * that small text is as dark as other programs draw it. Glyphs that the caller provides are unchanged.
+ * Otherwise as camber_fonts_get_outline. */
+CAMBER_API camber_status camber_fonts_get_sized_outline(camber_fonts *fonts, uint32_t glyph, float size_px,
+                                                        camber_outline *outline);
 
 /* ---- Text ------------------------------------------------------------------------------------------- */
 

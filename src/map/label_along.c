@@ -16,6 +16,7 @@
 /* The line in the space in which the text is placed: the plane, or the picture as a pitch shows it. */
 typedef struct text_line {
     const camber_label_layout *layout;
+    double origin[2]; /* the points are relative to it */
     const float *points;
     size_t count;
     double translate[2];
@@ -33,7 +34,8 @@ static bool set_point(const text_line *line, const double plane[2], double at[2]
 }
 
 static bool line_point(const text_line *line, size_t i, double at[2]) {
-    const double plane[2] = {(double)line->points[2 * i], (double)line->points[2 * i + 1]};
+    const double plane[2] = {line->origin[0] + (double)line->points[2 * i],
+                             line->origin[1] + (double)line->points[2 * i + 1]};
     return set_point(line, plane, at);
 }
 
@@ -83,10 +85,10 @@ static void turn_round(double *points, size_t count) {
 /* Lays the track along the line. with: it runs in the order of the stored points. CAMBER_ERROR_NOT_FOUND: the line is
  * too short. */
 static camber_status lay(camber_label_track *track, const text_line *line, const camber_label_candidate *c, bool with) {
-    const double plane[2] = {c->x, c->y};
-    double at[2];
+    double base[2], at[2];
     track->count = 0;
-    if (!set_point(line, plane, at))
+    camber_label_base(line->layout, c, base);
+    if (!set_point(line, base, at))
         return CAMBER_ERROR_NOT_FOUND;
     if (!push(track, at, 0.0))
         return CAMBER_ERROR_MEMORY;
@@ -153,7 +155,10 @@ camber_status camber_label_track_find(const camber_label_layout *layout, const c
     const camber_label_form *form = layout->forms + c->form;
     const camber_label_rule *rule = layout->rules + form->rule;
     const camber_label_line *stored = layout->lines + c->line;
+    double base[2];
+    camber_label_base(layout, c, base);
     const text_line line = {.layout = layout,
+                            .origin = {base[0] + c->line_x, base[1] + c->line_y},
                             .points = layout->line_points + 2 * stored->first,
                             .count = stored->count,
                             .translate = {rule->text_translate_px[0], rule->text_translate_px[1]},

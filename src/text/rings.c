@@ -9,8 +9,6 @@
 #include <math.h>
 
 static const double PI = 3.14159265358979323846;
-/* How far an outline's segments may be from its curves, px. */
-static const float TOLERANCE_PX = 1.0f / 32.0f;
 static const float LARGEST_PX = 16384.0f;
 static const float FARTHEST_PX = 1e9f; /* of camber_polylines_create */
 static const size_t MOST_POINTS = (size_t)1 << 31;
@@ -106,7 +104,7 @@ static camber_status add_glyph(camber_text_rings *r, const camber_text_glyph *g,
     camber_outline outline;
     if (g->glyph == CAMBER_NO_GLYPH || !(size > 0.0))
         return CAMBER_OK;
-    camber_status status = camber_fonts_get_outline(r->fonts, g->glyph, TOLERANCE_PX / (float)size, &outline);
+    camber_status status = camber_fonts_get_sized_outline(r->fonts, g->glyph, (float)size, &outline);
     for (size_t i = 0; i < outline.ring_count && status == CAMBER_OK; i++) {
         const uint32_t first = outline.offsets[i], count = outline.offsets[i + 1] - first;
         status = begin_ring(r, position->row, (size_t)count + 1);

@@ -164,7 +164,7 @@ static camber_status make_labels(camber_scene *scene, const camber_window_labels
         placed ? camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels)
                : camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
     scene->label_count = labels.label_count;
     camber_labels_free(&labels);
     return status;

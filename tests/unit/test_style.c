@@ -501,7 +501,7 @@ static void check_city(const camber_style *style) {
         {"", "man_made=pier", "pier-line"},
         {"", "aeroway=runway", "runway-line"},
         {"", "aerialway=gondola", "lift-line lift-line-ties"},
-        {"", "barrier=hedge", ""},
+        {"", "barrier=hedge", "hedge-line"},
         {"transportation_name", "class=primary", ""},
         {"water_name", "class=lake", ""},
         {"", "building=yes", ""},

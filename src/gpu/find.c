@@ -11,7 +11,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-/* Of devices of the same kind the first is preferred. */
+/* If two devices are of the same kind, the first is preferred. */
 static const camber_gpu_backend *const backends[] = {
 #ifdef CAMBER_CPU
     &camber_cpu,

@@ -1,8 +1,8 @@
-/* What clang needs to compile the kernels' text as functions of the library. The build includes this file before the
- * kernels (-include), and compiles them as OpenCL C for a processor.
+/* Lets clang compile the kernels' text as functions of the library. The build includes this file before the kernels
+ * (-include), and compiles them as OpenCL C for a processor.
  *
  * Main idea: clang knows OpenCL C's types and vectors, and leaves its functions to the runtime. These are the few that
- * the kernels call, each as what LLVM has for it. Address spaces are all the same memory. A kernel becomes a loop over
+ * the kernels call, each as what LLVM has for it. All address spaces are the same memory. A kernel becomes a loop over
  * work-items:
  *
  *     void NAME(arguments, first work-item, end of them, number of all work-items of the launch) */

@@ -1,3 +1,9 @@
+/* Threads that share the work-items of a launch.
+ *
+ * Input: a kernel's function, its arguments, and a number of work-items. Main idea: runs of work-items are taken from
+ * one counter, by the thread that launches and by those that wait for launches. A launch is open while its thread still
+ * finds work; a thread that wakes too late for it waits for the next. So a launch waits only for threads that take
+ * part. */
 #include "gpu/cpu/pool.h"
 
 #include "base/threads.h"

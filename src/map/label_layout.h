@@ -100,6 +100,8 @@ typedef struct camber_label_layout {
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
+/* Returns how many device px a CSS px of the last whole zoom has in the view: from 1 to less than 2 times the ratio. */
+double camber_label_whole_zoom_px(const camber_view *view);
 /* Finds the candidates of a view. The caller has set context, features, view, fonts and sprites. Returns
  * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);

@@ -323,7 +323,7 @@ static bool is_seen(const camber_view *view, const camber_box *box) {
 static camber_status place_one(placer *p, camber_label_candidate *c) {
     const camber_label_form *form = p->layout->forms + c->form;
     const camber_symbol *s = &p->layout->rules[form->rule].symbol;
-    const double near = 0.5 * s->spacing_px * p->layout->view->ratio;
+    const double near = 0.5 * s->spacing_px * camber_label_whole_zoom_px(p->layout->view);
     const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text && near > 0.0;
     tried text, icon;
     c->box = CAMBER_BOX_EMPTY;

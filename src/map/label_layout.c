@@ -25,6 +25,11 @@ typedef struct layout_maker {
 
 /* ---- What is seen ---- */
 
+double camber_label_whole_zoom_px(const camber_view *view) {
+    const double zoom = camber_view_style_zoom(view);
+    return view->ratio * exp2(zoom - floor(zoom));
+}
+
 /* Returns the box around the quadrangle that is seen. */
 static camber_box find_corners(const camber_view *view) {
     double corners[8];
@@ -296,22 +301,24 @@ static camber_status anchor_line(layout_maker *m, const camber_label_thing *t, s
     return status;
 }
 
+/* As in MapLibre, labels are where they were at the last whole zoom, so that they do not move along their lines while a
+ * map zooms. */
 static camber_status anchor_lines(layout_maker *m, const camber_label_thing *t) {
     const camber_label_layout *l = m->layout;
     const camber_label_form *form = l->forms + m->form;
     const camber_label_rule *rule = l->rules + form->rule;
     const camber_text *text = form->vertical ? form->vertical : form->text;
-    const double ratio = l->view->ratio;
+    const double px = camber_label_whole_zoom_px(l->view), em = rule->symbol.anchor_text_px * px;
     double length = 0.0;
     if (text)
-        length = (double)(text->vertical ? text->bottom - text->top : text->right - text->left) * rule->text_px;
+        length = (double)(text->vertical ? text->bottom - text->top : text->right - text->left) * em;
     /* In MapLibre the px of an icon count as if they were units of text, of which an em has 24. */
     if (form->icon)
-        length = fmax(length, form->icon->width / form->icon->pixel_ratio * rule->text_px / 24.0);
-    const camber_anchor_rule anchors = {.spacing = fmax(rule->symbol.spacing_px * ratio, 1.0),
+        length = fmax(length, form->icon->width / form->icon->pixel_ratio * em / 24.0);
+    const camber_anchor_rule anchors = {.spacing = fmax(rule->symbol.spacing_px * px, 1.0),
                                         .label_length = length,
-                                        .em = rule->text_px,
-                                        .window = text ? 0.6 * rule->text_px : 0.0,
+                                        .em = em,
+                                        .window = text ? 0.6 * em : 0.0,
                                         .max_angle = rule->symbol.max_angle_deg * (3.14159265358979323846 / 180.0)};
     camber_status status = CAMBER_OK;
     for (size_t p = t->first_polyline; p < t->end_polyline && status == CAMBER_OK; p++)

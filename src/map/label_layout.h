@@ -131,6 +131,8 @@ typedef struct camber_label_layout {
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
+/* Returns how many device px a CSS px of the last whole zoom has in the view: from 1 to less than 2 times the ratio. */
+double camber_label_whole_zoom_px(const camber_view *view);
 /* Finds the candidates of a view or of a domain. The caller has set the members from context to sprites. Returns
  * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);

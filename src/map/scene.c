@@ -160,9 +160,13 @@ static camber_status make_labels(camber_scene *scene, const camber_window_labels
     camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
-    camber_status status =
-        placed ? camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels)
-               : camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+    camber_status status;
+    if (placed)
+        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW && camber_view_has_zoom_labels(features->style, &scene->view))
+        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &labels);
+    else
+        status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
         status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
     scene->label_count = labels.label_count;

@@ -294,8 +294,8 @@ CAMBER_API camber_status camber_features_read_sprites(camber_features *features,
 /* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
  * read, because features that are only labelled are read only if there are fonts. Glyphs that the style names (as
  * files: nothing is downloaded) are used before fonts. Scenes of the set, except those made with CAMBER_SCENE_LINES,
- * then have the labels of their view, which camber_scene_tessellate prepares for drawing. Tiles have no labels. desc
- * may be NULL. base_path is as in camber_features_read_sources.
+ * then have the labels of their view, which camber_scene_tessellate prepares for drawing, and tiles that are pictures
+ * have the labels of their zoom. desc may be NULL. base_path is as in camber_features_read_sources.
  * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, or not in the root; an unknown
  * scheme), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,

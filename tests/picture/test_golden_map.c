@@ -85,6 +85,47 @@ static void test_dark(void **state) {
     draw_place(state, &GARDENS, "monaco-dark", CAMBER_THEME_DARK);
 }
 
+/* Text of 10, 12 and 16 px in the scripts of the shipped font, dark on light with halos and light on dark; along a
+ * line, and turned with a blurred halo. */
+static void test_words(void **state) {
+    const fixture *s = *state;
+    const camber_scene_desc desc = {.view = {CAMBER_VIEW_CENTER, .zoom = 10, .width = 260, .height = 180},
+                                    .simplify_px = 0.1};
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    camber_scene *map = NULL;
+    bool good = true;
+    char words[8192];
+    FILE *file = fopen(CAMBER_TEST_DATA "/styles/words.json", "r");
+    assert_non_null(file);
+    assert_int_equal(camber_style_parse(s->context, words, fread(words, 1, sizeof words, file), "words", &style),
+                     CAMBER_OK);
+    fclose(file);
+    assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
+    assert_int_equal(camber_features_read_fonts(features, &(camber_fonts_desc){.no_system = true}, NULL), CAMBER_OK);
+    assert_int_equal(camber_features_read_sources(features, &desc.view, NULL), CAMBER_OK);
+    assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
+    assert_int_equal(camber_scene_get_info(map).labels, 8);
+    for (int b = 0; b < CAMBER_FIXTURE_DRAWERS && good; b++) {
+        camber_mesh *mesh = NULL;
+        if (!s->on.renderer[b])
+            continue;
+        assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[b], &mesh), CAMBER_OK);
+        assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+        const camber_frame frame = camber_scene_get_frame(map, mesh);
+        picture drawn = picture_draw(s->on.renderer[b], &frame);
+        good = golden_judge(s, "words", &drawn);
+        if (!good)
+            printf("words: not as they should be with %s\n", fixture_name(b));
+        picture_free(&drawn);
+        camber_mesh_destroy(mesh);
+    }
+    camber_scene_destroy(map);
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+    assert_true(good);
+}
+
 /* The file has 256 colours, and no pixel is far from what is drawn. */
 static void test_demo(void **state) {
     const fixture *s = *state;
@@ -166,7 +207,8 @@ int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark),
-                                       cmocka_unit_test(test_demo), cmocka_unit_test(test_moves)};
+                                       cmocka_unit_test(test_demo), cmocka_unit_test(test_words),
+                                       cmocka_unit_test(test_moves)};
     const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -252,9 +252,11 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
         camber_free(layout->context, list);
     }
     camber_free(layout->context, m.track.points);
-    labels->looks = layout->looks;
+    if (status != CAMBER_OK || !layout->look_count)
+        return status;
+    if (!(labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks)))
+        return CAMBER_ERROR_MEMORY;
     labels->look_count = layout->look_count;
-    layout->looks = NULL;
-    layout->look_count = layout->look_capacity = 0;
-    return status;
+    memcpy(labels->looks, layout->looks, layout->look_count * sizeof *labels->looks);
+    return CAMBER_OK;
 }

@@ -1,8 +1,8 @@
 /* Finds where the labels of a view may be placed.
  *
- * Input: features, a view. Output: candidates by layer. Main idea: the features that the view may see are found once,
- * and sorted by class. Each layer is then evaluated once per class, because all features of a class give the same
- * result. */
+ * Input: the things that a view may see. Output: candidates by layer. Main idea: things are sorted by class. Each layer
+ * is evaluated once per class, because all features of a class give the same result, and the result is kept for views
+ * that differ only in their place. */
 #include "map/label_layout.h"
 
 #include "features/rings.h"
@@ -15,23 +15,13 @@ static const double REACH_PX = 320.0;
 /* The tolerance to which lines are simplified, as for drawing, device px. */
 static const double SIMPLIFY_PX = 0.25;
 
-/* Polylines that the view may see: all rings of an area, one line, or one polyline of points. */
-typedef struct thing {
-    uint32_t class, feature;
-    size_t first_polyline, end_polyline;
-    uint8_t worlds; /* bit i: the copy of the world that is moved by i - 1 */
-} thing;
-
 typedef struct layout_maker {
     camber_label_layout *layout;
     camber_box corners; /* box around what is seen, world coordinates */
     camber_box seen;    /* the same, widened by the reach of the current labels */
     double least_importance;
-    thing *things; /* sorted by class */
-    size_t thing_count, thing_capacity;
-    size_t *class_things; /* class_count + 1 */
     const camber_layer_look *look;
-    uint32_t form;
+    uint32_t class, form;
     camber_label_path path; /* of the current line, px from origin */
     size_t path_capacity[2];
     double origin[2]; /* world coordinates of its first point */
@@ -40,17 +30,12 @@ typedef struct layout_maker {
     size_t ring_capacity;
 } layout_maker;
 
-/* ---- Things ---- */
-
-static bool is_label(camber_geometry_kind kind) {
-    return kind == CAMBER_GEOMETRY_LABEL_LINE || kind == CAMBER_GEOMETRY_LABEL_AREA ||
-           kind == CAMBER_GEOMETRY_LABEL_POINT;
-}
+/* ---- What is seen ---- */
 
 /* Returns the box around the quadrangle that is seen. */
-static camber_box find_corners(const camber_label_layout *layout) {
+static camber_box find_corners(const camber_view *view) {
     double corners[8];
-    camber_view_corners(layout->view, corners);
+    camber_view_corners(view, corners);
     camber_box box = CAMBER_BOX_EMPTY;
     for (int i = 0; i < 4; i++)
         camber_box_add(&box, corners[2 * i], corners[2 * i + 1]);
@@ -64,77 +49,11 @@ static void set_reach(layout_maker *m, double reach_px) {
 }
 
 static uint8_t find_worlds(const layout_maker *m, const camber_box *box) {
-    uint8_t worlds = 0;
-    for (int i = 0; i < 3; i++)
-        if (box->x0 + (i - 1) <= m->seen.x1 && box->x1 + (i - 1) >= m->seen.x0 && box->y0 <= m->seen.y1 &&
-            box->y1 >= m->seen.y0)
-            worlds |= (uint8_t)(1 << i);
-    return worlds;
+    return camber_label_find_worlds(&m->seen, box);
 }
 
 static bool is_finite(const double *point) {
     return isfinite(point[0]) && isfinite(point[1]);
-}
-
-static camber_box box_of(const camber_features *f, size_t first_polyline, size_t end_polyline) {
-    camber_box box = CAMBER_BOX_EMPTY;
-    for (size_t i = f->offsets[first_polyline]; i < f->offsets[end_polyline]; i++)
-        if (is_finite(f->points + 2 * i))
-            camber_box_add(&box, f->points[2 * i], f->points[2 * i + 1]);
-    return box;
-}
-
-static camber_status add_thing(layout_maker *m, size_t first_polyline, size_t end_polyline) {
-    const camber_features *f = m->layout->features;
-    const camber_box box = box_of(f, first_polyline, end_polyline);
-    const uint8_t worlds = box.x0 <= box.x1 ? find_worlds(m, &box) : 0;
-    if (!worlds)
-        return CAMBER_OK;
-    if (!camber_grow(f->context, &m->things, &m->thing_capacity, m->thing_count + 1, sizeof *m->things))
-        return CAMBER_ERROR_MEMORY;
-    const uint32_t feature = f->polyline_feature[first_polyline];
-    m->things[m->thing_count++] = (thing){.class = f->feature_class[feature],
-                                          .feature = feature,
-                                          .first_polyline = first_polyline,
-                                          .end_polyline = end_polyline,
-                                          .worlds = worlds};
-    return CAMBER_OK;
-}
-
-static camber_status find_things(layout_maker *m) {
-    const camber_features *f = m->layout->features;
-    camber_status status = CAMBER_OK;
-    for (size_t p = 0, next; p < f->polyline_count && status == CAMBER_OK; p = next) {
-        const camber_geometry_kind kind = camber_features_kind(f, p);
-        next = p + 1;
-        if (kind == CAMBER_GEOMETRY_LABEL_AREA)
-            while (next < f->polyline_count && f->polyline_feature[next] == f->polyline_feature[p])
-                next++;
-        if (is_label(kind))
-            status = add_thing(m, p, next);
-    }
-    return status;
-}
-
-/* Sorts the things by class. The sort is stable. */
-static camber_status sort_things(layout_maker *m) {
-    camber_context *context = m->layout->context;
-    const size_t classes = m->layout->features->class_count;
-    m->class_things = camber_alloc_zero(context, classes + 2, sizeof *m->class_things);
-    thing *sorted = camber_alloc(context, m->thing_count, sizeof *sorted);
-    if (!m->class_things || !sorted) {
-        camber_free(context, sorted);
-        return CAMBER_ERROR_MEMORY;
-    }
-    for (size_t i = 0; i < m->thing_count; i++)
-        m->class_things[m->things[i].class + 2]++;
-    for (size_t c = 0; c < classes; c++)
-        m->class_things[c + 2] += m->class_things[c + 1];
-    for (size_t i = 0; i < m->thing_count; i++)
-        sorted[m->class_things[m->things[i].class + 1]++] = m->things[i];
-    camber_free(context, m->things);
-    m->things = sorted;
-    return CAMBER_OK;
 }
 
 /* ---- Candidates ---- */
@@ -145,7 +64,7 @@ static bool is_in(const camber_box *box, double x, double y) {
 
 /* Adds a candidate with the current class's form at a point of the world, if the point is near enough to what is seen.
  * on_line: has the line and the segment that the candidate is on. NULL: it is on no line. */
-static camber_status add_candidate(layout_maker *m, const thing *t, const double world[2], double shift,
+static camber_status add_candidate(layout_maker *m, const camber_label_thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
     camber_label_candidate made = {.form = m->form, .feature = t->feature, .line = CAMBER_NO_PATH};
@@ -272,15 +191,17 @@ static camber_status keep_line(layout_maker *m, double shift, bool reversed, uin
     return CAMBER_OK;
 }
 
-static camber_status anchor_line(layout_maker *m, const thing *t, size_t polyline, const camber_anchor_rule *rule) {
+static camber_status anchor_line(layout_maker *m, const camber_label_thing *t, size_t polyline,
+                                 const camber_anchor_rule *rule) {
     const double scale = m->layout->view->scale_px;
     const bool middle = camber_label_rule_of(m->layout, &(camber_label_candidate){.form = m->form})->symbol.placement ==
                         CAMBER_SYMBOL_LINE_CENTER;
+    const uint8_t worlds = find_worlds(m, &t->box);
     bool reversed;
-    camber_status status = read_path(m, polyline, &reversed);
-    for (int world = 0; world < 3 && status == CAMBER_OK && m->path.count > 1; world++) {
+    camber_status status = worlds ? read_path(m, polyline, &reversed) : CAMBER_OK;
+    for (int world = 0; world < 3 && worlds && status == CAMBER_OK && m->path.count > 1; world++) {
         const double shift = world - 1;
-        if (!(t->worlds >> world & 1))
+        if (!(worlds >> world & 1))
             continue;
         camber_anchor_rule moved = *rule;
         moved.seen = (camber_box){(m->seen.x0 - shift - m->origin[0]) * scale, (m->seen.y0 - m->origin[1]) * scale,
@@ -302,7 +223,7 @@ static camber_status anchor_line(layout_maker *m, const thing *t, size_t polylin
     return status;
 }
 
-static camber_status anchor_lines(layout_maker *m, const thing *t) {
+static camber_status anchor_lines(layout_maker *m, const camber_label_thing *t) {
     const camber_label_layout *l = m->layout;
     const camber_label_form *form = l->forms + m->form;
     const camber_label_rule *rule = l->rules + form->rule;
@@ -325,18 +246,19 @@ static camber_status anchor_lines(layout_maker *m, const thing *t) {
     return status;
 }
 
-static camber_status anchor_point(layout_maker *m, const thing *t, const double world[2]) {
+static camber_status anchor_point(layout_maker *m, const camber_label_thing *t, const double world[2]) {
+    const uint8_t worlds = find_worlds(m, &t->box);
     camber_status status = CAMBER_OK;
     for (int i = 0; i < 3 && status == CAMBER_OK; i++)
-        if (t->worlds >> i & 1)
+        if (worlds >> i & 1)
             status = add_candidate(m, t, world, i - 1, NULL);
     return status;
 }
 
 /* Anchors the polygon whose rings are from first up to end. */
-static camber_status anchor_polygon(layout_maker *m, const thing *t, size_t first, size_t end) {
+static camber_status anchor_polygon(layout_maker *m, const camber_label_thing *t, size_t first, size_t end) {
     const camber_features *f = m->layout->features;
-    const camber_box box = box_of(f, first, first + 1);
+    const camber_box box = camber_label_box_of(f, first, first + 1);
     if (box.x0 > box.x1 || !find_worlds(m, &box))
         return CAMBER_OK;
     const double scale = m->layout->view->scale_px, *origin = f->points + 2 * f->offsets[first];
@@ -364,7 +286,7 @@ static camber_status anchor_polygon(layout_maker *m, const thing *t, size_t firs
 }
 
 /* An outer ring is stored before its holes. */
-static camber_status anchor_areas(layout_maker *m, const thing *t) {
+static camber_status anchor_areas(layout_maker *m, const camber_label_thing *t) {
     const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;
     for (size_t p = t->first_polyline, next; p < t->end_polyline && status == CAMBER_OK; p = next) {
@@ -378,7 +300,7 @@ static camber_status anchor_areas(layout_maker *m, const thing *t) {
 }
 
 /* Anchors each point, or the first point of each line. */
-static camber_status anchor_points(layout_maker *m, const thing *t, bool each) {
+static camber_status anchor_points(layout_maker *m, const camber_label_thing *t, bool each) {
     const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;
     for (size_t p = t->first_polyline; p < t->end_polyline; p++)
@@ -388,7 +310,7 @@ static camber_status anchor_points(layout_maker *m, const thing *t, bool each) {
     return status;
 }
 
-static camber_status anchor_thing(layout_maker *m, const thing *t) {
+static camber_status anchor_thing(layout_maker *m, const camber_label_thing *t) {
     const camber_geometry_kind kind = m->layout->features->classes[t->class].geometry;
     const camber_label_rule *rule = m->layout->rules + m->layout->forms[m->form].rule;
     if (rule->symbol.placement != CAMBER_SYMBOL_POINT)
@@ -422,36 +344,67 @@ static double reach_of(const camber_label_layout *l, uint32_t form_index) {
     return (l->lens.pitched ? 3.0 : 1.5) * reach + CAMBER_LABEL_MARGIN_PX * l->view->ratio;
 }
 
-static camber_status lay_out_class(layout_maker *m, uint32_t class_index) {
+/* Finds what the layer's labels of the class show: the number of a form, or CAMBER_NO_FORM. */
+static camber_status make_form(layout_maker *m, uint32_t *form) {
     const camber_features *f = m->layout->features;
-    const camber_feature_class *class = f->classes + class_index;
+    const camber_feature_class *class = f->classes + m->class;
+    *form = CAMBER_NO_FORM;
     if (!camber_plan_comes_to(f, m->look->layer, class))
         return CAMBER_OK;
     const camber_feature_view feature = camber_plan_view_of(f, class);
     if (!camber_style_layer_matches(m->look->layer, m->look->zoom, &feature))
         return CAMBER_OK;
-    camber_status status = camber_label_form_make(m->layout, m->look, class, &m->form);
+    return camber_label_form_make(m->layout, m->look, class, form);
+}
+
+/* known: the forms of the layer's classes; 0: not found yet, otherwise the form's number + 2, or 1 for none. */
+static camber_status lay_out_class(layout_maker *m, uint32_t *known) {
+    camber_status status = CAMBER_OK;
+    if (known[m->class] == 1)
+        return CAMBER_OK;
+    m->form = known[m->class] - 2;
+    if (!known[m->class]) {
+        status = make_form(m, &m->form);
+        if (status == CAMBER_OK)
+            known[m->class] = m->form == CAMBER_NO_FORM ? 1 : m->form + 2;
+    }
     if (status != CAMBER_OK || m->form == CAMBER_NO_FORM)
         return status;
     set_reach(m, fmin(reach_of(m->layout, m->form), REACH_PX * m->layout->view->ratio));
-    for (size_t i = m->class_things[class_index]; i < m->class_things[class_index + 1] && status == CAMBER_OK; i++)
-        status = anchor_thing(m, m->things + i);
+    const camber_label_things *things = m->layout->things;
+    for (size_t i = things->class_first[m->class]; i < things->class_first[m->class + 1] && status == CAMBER_OK; i++)
+        status = anchor_thing(m, things->items + i);
     return status;
+}
+
+/* Returns the table of a layer's forms. NULL: there is no memory. */
+static uint32_t *known_forms(camber_label_layout *l, size_t index) {
+    const size_t layers = l->features->style->layer_count;
+    if (!l->known_forms) {
+        if (!(l->known_forms = camber_alloc_zero(l->context, layers, sizeof *l->known_forms)))
+            return NULL;
+        l->known_count = layers;
+    }
+    if (!l->known_forms[index])
+        l->known_forms[index] = camber_alloc_zero(l->context, l->features->class_count, sizeof **l->known_forms);
+    return l->known_forms[index];
 }
 
 static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
     camber_label_layout *l = m->layout;
     const camber_style_layer *layer = l->features->style->layers + index;
-    if (layer->kind != CAMBER_LAYER_SYMBOL || !layer->visible || zoom < layer->min_zoom ||
+    if (layer->kind != CAMBER_LAYER_SYMBOL || zoom < layer->min_zoom ||
         (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
         return CAMBER_OK;
     const camber_layer_look look = camber_style_layer_look(layer, zoom);
     const size_t first = l->candidate_count;
-    camber_status status = CAMBER_OK;
+    uint32_t *known = known_forms(l, index);
+    camber_status status = known ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     m->look = &look;
-    for (size_t c = 0; c < l->features->class_count && status == CAMBER_OK; c++)
-        if (m->class_things[c] < m->class_things[c + 1])
-            status = lay_out_class(m, (uint32_t)c);
+    for (size_t i = 0; i < l->things->count && status == CAMBER_OK; i = l->things->class_first[m->class + 1]) {
+        m->class = l->things->items[i].class;
+        status = lay_out_class(m, known);
+    }
     m->look = NULL;
     if (status != CAMBER_OK || l->candidate_count == first)
         return status;
@@ -461,22 +414,24 @@ static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
     return CAMBER_OK;
 }
 
+camber_box camber_label_seen(const camber_view *view) {
+    const double reach = REACH_PX * view->ratio / view->scale_px;
+    const camber_box box = find_corners(view);
+    return (camber_box){box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach};
+}
+
 camber_status camber_label_layout_make(camber_label_layout *layout) {
     const double zoom = camber_view_style_zoom(layout->view);
     layout_maker m = {.layout = layout,
-                      .corners = find_corners(layout),
+                      .corners = find_corners(layout->view),
                       .least_importance = SIMPLIFY_PX / layout->view->scale_px,
                       .anchors.context = layout->context};
+    camber_status status = CAMBER_OK;
     layout->lens = camber_view_lens_of(layout->view);
+    layout->layer_count = layout->candidate_count = layout->line_count = layout->line_point_count = 0;
     set_reach(&m, REACH_PX * layout->view->ratio);
-    camber_status status = layout->features->points ? find_things(&m) : CAMBER_OK;
-    if (status == CAMBER_OK && m.thing_count) {
-        status = sort_things(&m);
-        for (size_t i = 0; i < layout->features->style->layer_count && status == CAMBER_OK; i++)
-            status = lay_out_layer(&m, i, zoom);
-    }
-    camber_free(layout->context, m.things);
-    camber_free(layout->context, m.class_things);
+    for (size_t i = 0; i < layout->features->style->layer_count && layout->things->count && status == CAMBER_OK; i++)
+        status = lay_out_layer(&m, i, zoom);
     camber_free(layout->context, m.path.points);
     camber_free(layout->context, m.path.along);
     camber_free(layout->context, m.anchors.items);
@@ -487,6 +442,9 @@ camber_status camber_label_layout_make(camber_label_layout *layout) {
 void camber_label_layout_free(camber_label_layout *layout) {
     camber_context *context = layout->context;
     camber_label_words_free(layout);
+    for (size_t i = 0; i < layout->known_count; i++)
+        camber_free(context, layout->known_forms[i]);
+    camber_free(context, layout->known_forms);
     camber_free(context, layout->layers);
     camber_free(context, layout->rules);
     camber_free(context, layout->forms);

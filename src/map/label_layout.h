@@ -1,11 +1,12 @@
 /* A view's labels before they are placed.
  *
- *     features -> things (what the view may see) -> for each layer and class a form (rule, texts, icon)
+ *     features -> things -> for each layer and class a form (rule, texts, icon)
  *     form, geometry -> candidates: a form at an anchor */
 #ifndef CAMBER_MAP_LABEL_LAYOUT_H
 #define CAMBER_MAP_LABEL_LAYOUT_H
 
 #include "map/label_anchors.h"
+#include "map/label_things.h"
 #include "map/labels.h"
 #include "style/symbol.h"
 
@@ -72,10 +73,13 @@ typedef struct camber_layout_layer {
     size_t first_candidate, candidate_count;
 } camber_layout_layer;
 
+/* Rules, forms, runs, looks and words depend on the features and on the view's zoom, ratio, bearing and pitch, but not
+ * on its place. So a layout can be made again for another place. */
 typedef struct camber_label_layout {
     camber_context *context;
     const camber_features *features;
     const camber_view *view;
+    const camber_label_things *things; /* that the view may see */
     camber_fonts *fonts;
     camber_sprites *sprites; /* NULL: none */
     camber_view_lens lens;
@@ -96,13 +100,17 @@ typedef struct camber_label_layout {
     float *line_points; /* pairs */
     size_t line_point_count, line_point_capacity;
     struct camber_label_words *words; /* texts that were shaped (label_text.c) */
+    uint32_t **known_forms; /* known_count tables by layer of the style: the forms of classes, NULL: none yet */
+    size_t known_count;
 } camber_label_layout;
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
-/* Finds the candidates of a view. The caller has set context, features, view, fonts and sprites. Returns
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Finds the candidates of a view, and forgets those of the view before it. The caller has set context, features, view,
+ * things, fonts and sprites. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);
+/* Returns the part of the world in which things may have labels that reach into a view. */
+camber_box camber_label_seen(const camber_view *view);
 
 /* ---- Forms (label_forms.c, label_text.c) ---- */
 
@@ -179,8 +187,7 @@ double camber_label_cluster_middle(const camber_text *text, size_t first, double
 
 /* Decides which candidates are shown. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_label_place_all(camber_label_layout *layout);
-/* Makes the items of the labels that are shown. The layout's looks are moved to labels. Returns CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_LIMIT. */
+/* Makes the items of the labels that are shown. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels);
 
 #endif

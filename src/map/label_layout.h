@@ -9,6 +9,7 @@
 #include "map/label_things.h"
 #include "map/labels.h"
 #include "style/symbol.h"
+#include "text/number_map.h"
 
 #define CAMBER_NO_PATH UINT32_MAX
 /* Labels collide up to this far outside the picture, in CSS px, so that they seldom change while a map moves. */
@@ -102,6 +103,10 @@ typedef struct camber_label_layout {
     struct camber_label_words *words; /* texts that were shaped (label_text.c) */
     uint32_t **known_forms; /* known_count tables by layer of the style: the forms of classes, NULL: none yet */
     size_t known_count;
+    uint8_t *class_states; /* by class (label_layout.c); NULL: none yet */
+    double *poles;         /* of areas: pole_count pairs, px from an area's first point */
+    size_t pole_count, pole_capacity;
+    camber_number_map pole_numbers; /* the number of an area's first polyline -> its pole's number + 1 */
 } camber_label_layout;
 
 /* Call it even after a failure. */

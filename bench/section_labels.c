@@ -327,7 +327,6 @@ static camber_status make_sheet(sheet *s) {
     return status;
 }
 
-static camber_frame_stats STATS;
 static camber_status draw_shapes(sheet *s, const camber_label_shapes *shapes) {
     bench_taking taking = {.picture = s->b->picture};
     camber_pass passes[CAMBER_LABEL_PASSES];
@@ -339,7 +338,7 @@ static camber_status draw_shapes(sheet *s, const camber_label_shapes *shapes) {
     frame.pass_count = camber_label_shapes_passes(shapes, shapes->ranges, passes, meshes);
     for (size_t i = 0; i < frame.pass_count; i++)
         passes[i].mesh = texts;
-    return status == CAMBER_OK ? camber_renderer_render(s->b->cl_renderer, &frame, bench_take_rows, &taking, getenv("STG")?&STATS:NULL)
+    return status == CAMBER_OK ? camber_renderer_render(s->b->cl_renderer, &frame, bench_take_rows, &taking, NULL)
                                : status;
 }
 
@@ -359,7 +358,6 @@ static camber_status draw_sheet(sheet *s, bool counts) {
     start = read_clocks();
     if (status == CAMBER_OK)
         status = draw_shapes(s, &shapes);
-    if(getenv("STG")) for(int i=0;i<(int)STATS.times.count;i++) printf("%s %.2f\n",STATS.times.stages[i].name,STATS.times.stages[i].ms);
     add_since(&to->draw, start, 1);
     add_since(&to->frame, begin, 1);
     camber_label_shapes_free(&shapes);
@@ -397,13 +395,14 @@ static void draw_peer(sheet *s, bool counts) {
 
 static void report_sheet(const sheet *s, json_t *result) {
     const double ms = bench_series_median(&s->frame.wall), mapnik = bench_series_median(&s->mapnik.wall);
-    bench_result_add_row(result, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}", "key", "glyphs",
-                                           "glyphs_of", font, "glyphs", (json_int_t)GLYPHS, "edges", (json_int_t)s->edges, "frame_ms", bench_ms(ms),
-                                           "cpu_ms", bench_ms(bench_series_median(&s->frame.cpu)), "shapes_ms",
-                                           bench_ms(bench_series_median(&s->shapes.cpu)), "tessellate_ms",
-                                           bench_ms(bench_series_median(&s->tessellate.cpu)), "draw_ms",
-                                           bench_ms(bench_series_median(&s->draw.cpu)), "mapnik_ms", bench_ms(mapnik),
-                                           "dark", s->darkness, "mapnik_dark", s->mapnik_darkness));
+    bench_result_add_row(result,
+                         json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}", "key", "glyphs",
+                                   "glyphs_of", font, "glyphs", (json_int_t)GLYPHS, "edges", (json_int_t)s->edges,
+                                   "frame_ms", bench_ms(ms), "cpu_ms", bench_ms(bench_series_median(&s->frame.cpu)),
+                                   "shapes_ms", bench_ms(bench_series_median(&s->shapes.cpu)), "tessellate_ms",
+                                   bench_ms(bench_series_median(&s->tessellate.cpu)), "draw_ms",
+                                   bench_ms(bench_series_median(&s->draw.cpu)), "mapnik_ms", bench_ms(mapnik), "dark",
+                                   s->darkness, "mapnik_dark", s->mapnik_darkness));
     bench_result_add_figure(result,
                             &(bench_figure){"glyphs", "glyphs with halos in OpenCL", "Mapnik", mapnik / ms, false});
 }
@@ -456,7 +455,7 @@ static camber_status measure_all(bench *b, const char *only, json_t *result) {
 
 static json_t *measure(bench *b, const char *only) {
     json_t *result = bench_result_new();
-    if (measure_all(b, getenv("ONLY") ? getenv("ONLY") : only, result) == CAMBER_OK)
+    if (measure_all(b, only, result) == CAMBER_OK)
         return result;
     json_decref(result);
     return NULL;
@@ -465,11 +464,12 @@ static json_t *measure(bench *b, const char *only) {
 static void print_row(const json_t *row, FILE *to) {
     if (*bench_text(row, "glyphs_of"))
         fprintf(to,
-                "%.0f glyphs of 12 px with halos (%.0f edges), %d x %d px: %.1f ms, CPU %.1f (shapes %.1f, tessellate %.1f, draw "
+                "%.0f glyphs of 12 px with halos (%.0f edges), %d x %d px: %.1f ms, CPU %.1f (shapes %.1f, tessellate "
+                "%.1f, draw "
                 "%.1f); Mapnik %.1f\n    ms, %.2f times as long (text by halo: %.3f, Mapnik %.3f)\n",
-                bench_number(row, "glyphs"), bench_number(row, "edges"), BENCH_SIDE_PX, BENCH_SIDE_PX, bench_number(row, "frame_ms"),
-                bench_number(row, "cpu_ms"), bench_number(row, "shapes_ms"), bench_number(row, "tessellate_ms"),
-                bench_number(row, "draw_ms"), bench_number(row, "mapnik_ms"),
+                bench_number(row, "glyphs"), bench_number(row, "edges"), BENCH_SIDE_PX, BENCH_SIDE_PX,
+                bench_number(row, "frame_ms"), bench_number(row, "cpu_ms"), bench_number(row, "shapes_ms"),
+                bench_number(row, "tessellate_ms"), bench_number(row, "draw_ms"), bench_number(row, "mapnik_ms"),
                 bench_number(row, "mapnik_ms") / bench_number(row, "frame_ms"), bench_number(row, "dark"),
                 bench_number(row, "mapnik_dark"));
     if (*bench_text(row, "picture"))

@@ -239,6 +239,24 @@ static camber_status make_layer(item_maker *m, const camber_layout_layer *layer,
     return status;
 }
 
+/* Copies the looks that items have; the layout may have more, of other views. */
+static camber_status take_looks(const camber_label_layout *layout, camber_labels *labels) {
+    uint32_t *numbers = camber_alloc_zero(labels->context, layout->look_count, sizeof *numbers); /* + 1; 0: none yet */
+    labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks);
+    if (numbers && labels->looks)
+        for (size_t i = 0; i < labels->item_count; i++) {
+            uint32_t *look = &labels->items[i].look;
+            if (!numbers[*look]) {
+                labels->looks[labels->look_count++] = layout->looks[*look];
+                numbers[*look] = (uint32_t)labels->look_count;
+            }
+            *look = numbers[*look] - 1;
+        }
+    const camber_status status = numbers && labels->looks ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_free(labels->context, numbers);
+    return status;
+}
+
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels) {
     item_maker m = {.layout = layout, .labels = labels, .track.context = layout->context};
     labels->layers = camber_alloc(labels->context, layout->layer_count, sizeof *labels->layers);
@@ -252,11 +270,5 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
         camber_free(layout->context, list);
     }
     camber_free(layout->context, m.track.points);
-    if (status != CAMBER_OK || !layout->look_count)
-        return status;
-    if (!(labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks)))
-        return CAMBER_ERROR_MEMORY;
-    labels->look_count = layout->look_count;
-    memcpy(labels->looks, layout->looks, layout->look_count * sizeof *labels->looks);
-    return CAMBER_OK;
+    return status == CAMBER_OK ? take_looks(layout, labels) : status;
 }

@@ -1,19 +1,14 @@
-/* Finds where the labels of a view may be placed.
+/* Finds where the labels of a view or of a domain may be placed.
  *
- * Input: the things that a view may see. Output: candidates by layer. Main idea: things are sorted by class. Each layer
- * is evaluated once per class, because all features of a class give the same result, and the result is kept for views
- * that differ only in their place. */
+ * Input: the things that may be seen. Output: candidates by layer. Main idea: things are sorted by class. Each layer is
+ * evaluated once per class, because all features of a class give the same result. A layout that is kept for views which
+ * differ only in their place keeps these results, too. */
 #include "map/label_layout.h"
-
-#include "features/rings.h"
 
 #include <math.h>
 
 /* How far outside the picture an anchor may be if its label reaches into the picture, CSS px. */
 static const double REACH_PX = 320.0;
-
-/* The tolerance to which lines are simplified, as for drawing, device px. */
-static const double SIMPLIFY_PX = 0.25;
 
 /* What is known of a class after all layers were evaluated: whether one of them shows it. */
 enum { CLASS_UNKNOWN = 0, CLASS_IS_SILENT, CLASS_SPEAKS };
@@ -22,7 +17,6 @@ typedef struct layout_maker {
     camber_label_layout *layout;
     camber_box corners; /* box around what is seen, world coordinates */
     camber_box seen;    /* the same, widened by the reach of the current labels */
-    double least_importance;
     const camber_layer_look *look;
     uint32_t *classes; /* class_count that have things and may have labels */
     size_t class_count, class_capacity;
@@ -47,14 +41,25 @@ static camber_box find_corners(const camber_view *view) {
     return box;
 }
 
-/* Widens what is seen by a reach in device px. */
+/* Widens what is seen by a reach in device px. In a domain all anchors are wanted that are inside it; a px more does no
+ * harm. */
 static void set_reach(layout_maker *m, double reach_px) {
+    const camber_label_domain *domain = m->layout->domain;
+    if (domain) {
+        const camber_box *b = &domain->known;
+        const double all = domain->whole ? INFINITY : 1.0;
+        m->seen = (camber_box){(b->x0 - all) / domain->world_px, (b->y0 - 1.0) / domain->world_px,
+                               (b->x1 + all) / domain->world_px, (b->y1 + 1.0) / domain->world_px};
+        return;
+    }
     const double reach = reach_px / m->layout->view->scale_px;
     m->seen = (camber_box){m->corners.x0 - reach, m->corners.y0 - reach, m->corners.x1 + reach, m->corners.y1 + reach};
 }
 
+/* Finds the copies of the world in which a box is seen. In the whole world there is only one. */
 static uint8_t find_worlds(const layout_maker *m, const camber_box *box) {
-    return camber_label_find_worlds(&m->seen, box);
+    const camber_label_domain *domain = m->layout->domain;
+    return domain && domain->whole ? 2 : camber_label_find_worlds(&m->seen, box);
 }
 
 static bool is_finite(const double *point) {
@@ -67,20 +72,42 @@ static bool is_in(const camber_box *box, double x, double y) {
     return x >= box->x0 && x <= box->x1 && y >= box->y0 && y <= box->y1;
 }
 
+/* Returns the px of a point of the world in a domain: multiples of its step, whatever the copy of the world. */
+static void snap_to_domain(const camber_label_domain *domain, const double world[2], double px[2]) {
+    const double turns = floor(world[0]);
+    px[0] = camber_label_snap((world[0] - turns) * domain->world_px) + turns * domain->world_px;
+    px[1] = camber_label_snap(world[1] * domain->world_px);
+}
+
+/* Finds the px of a point in a copy of the world. false: it is too far from what is seen. */
+static bool find_px(const layout_maker *m, const double world[2], double shift, double px[2]) {
+    const camber_label_domain *domain = m->layout->domain;
+    if (!domain) {
+        camber_view_project(m->layout->view, world[0] + shift, world[1], px);
+        return is_finite(px) && is_in(&m->seen, world[0] + shift, world[1]);
+    }
+    snap_to_domain(domain, world, px);
+    if (domain->whole)
+        px[0] -= floor(px[0] / domain->world_px) * domain->world_px;
+    else
+        px[0] += shift * domain->world_px;
+    return is_finite(px) && (domain->whole || is_in(&domain->known, px[0], px[1]));
+}
+
 /* Adds a candidate with the current class's form at a point of the world, if the point is near enough to what is seen.
- * on_line: has the line and the segment that the candidate is on. NULL: it is on no line. */
+ * shift: of the copy of the world. on_line: has the line and the segment that the candidate is on. NULL: it is on no
+ * line. */
 static camber_status add_candidate(layout_maker *m, const camber_label_thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
-    camber_label_candidate made = {.form = m->form, .feature = t->feature, .line = CAMBER_NO_PATH};
-    if (on_line) {
-        made.line = on_line->line;
-        made.segment = on_line->segment;
-    }
+    camber_label_candidate made = {.line = CAMBER_NO_PATH};
     double px[2];
-    camber_view_project(l->view, world[0] + shift, world[1], px);
-    if (!isfinite(px[0]) || !isfinite(px[1]) || !is_in(&m->seen, world[0] + shift, world[1]))
+    if (!find_px(m, world, shift, px))
         return CAMBER_OK;
+    if (on_line)
+        made = *on_line;
+    made.form = m->form;
+    made.feature = t->feature;
     made.x = px[0];
     made.y = px[1];
     made.rank = camber_mix(camber_mix_point(0, world), l->forms[m->form].hash);
@@ -92,7 +119,8 @@ static camber_status add_candidate(layout_maker *m, const camber_label_thing *t,
 
 static bool is_kept(const layout_maker *m, size_t i, size_t first, size_t end) {
     const camber_features *f = m->layout->features;
-    return (i == first || i + 1 == end || !f->importance || !((double)f->importance[i] < m->least_importance)) &&
+    return (i == first || i + 1 == end || !f->importance ||
+            !((double)f->importance[i] < m->layout->least_importance)) &&
            is_finite(f->points + 2 * i);
 }
 
@@ -176,17 +204,22 @@ static camber_status read_path(layout_maker *m, size_t polyline, bool *reversed)
     return CAMBER_OK;
 }
 
-static camber_status keep_line(layout_maker *m, double shift, bool reversed, uint32_t *line) {
+/* Turns a vector of the world as the picture is turned. */
+static void turn(const camber_view *view, double x, double y, double turned[2]) {
+    turned[0] = x * view->cosine + y * view->sine;
+    turned[1] = y * view->cosine - x * view->sine;
+}
+
+/* Keeps the path's points for the labels on it. */
+static camber_status keep_line(layout_maker *m, bool reversed, uint32_t *line) {
     camber_label_layout *l = m->layout;
-    const double scale = l->view->scale_px;
     const size_t first = l->line_point_count, count = m->path.count;
     if (!camber_grow(l->context, &l->line_points, &l->line_point_capacity, first + count, 2 * sizeof *l->line_points) ||
         !camber_grow(l->context, &l->lines, &l->line_capacity, l->line_count + 1, sizeof *l->lines))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < count; i++) {
         double px[2];
-        camber_view_project(l->view, m->origin[0] + shift + m->path.points[2 * i] / scale,
-                            m->origin[1] + m->path.points[2 * i + 1] / scale, px);
+        turn(l->view, m->path.points[2 * i], m->path.points[2 * i + 1], px);
         l->line_points[2 * (first + i)] = (float)px[0];
         l->line_points[2 * (first + i) + 1] = (float)px[1];
     }
@@ -196,12 +229,44 @@ static camber_status keep_line(layout_maker *m, double shift, bool reversed, uin
     return CAMBER_OK;
 }
 
+/* Finds where the line's first point is, relative to an anchor on it. */
+static void find_line_start(const layout_maker *m, const double place[2], camber_label_candidate *on_line) {
+    const camber_label_domain *domain = m->layout->domain;
+    const camber_view *view = m->layout->view;
+    double start[2], anchor[2];
+    if (domain) {
+        snap_to_domain(domain, m->origin, start);
+        snap_to_domain(domain, place, anchor);
+    } else {
+        camber_view_project(view, m->origin[0], m->origin[1], start);
+        camber_view_project(view, place[0], place[1], anchor);
+    }
+    on_line->line_x = start[0] - anchor[0];
+    on_line->line_y = start[1] - anchor[1];
+}
+
+/* Adds a candidate at each anchor of the current path. */
+static camber_status add_on_line(layout_maker *m, const camber_label_thing *t, double shift, uint32_t line) {
+    const double scale = m->layout->view->scale_px;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < m->anchors.count && status == CAMBER_OK; i++) {
+        camber_label_candidate on_line = {.line = line, .segment = (uint32_t)m->anchors.items[i].segment};
+        double point[2];
+        camber_path_point(&m->path, m->anchors.items + i, point);
+        const double place[2] = {m->origin[0] + point[0] / scale, m->origin[1] + point[1] / scale};
+        find_line_start(m, place, &on_line);
+        status = add_candidate(m, t, place, shift, &on_line);
+    }
+    return status;
+}
+
 static camber_status anchor_line(layout_maker *m, const camber_label_thing *t, size_t polyline,
                                  const camber_anchor_rule *rule) {
     const double scale = m->layout->view->scale_px;
     const bool middle = camber_label_rule_of(m->layout, &(camber_label_candidate){.form = m->form})->symbol.placement ==
                         CAMBER_SYMBOL_LINE_CENTER;
     const uint8_t worlds = find_worlds(m, &t->box);
+    uint32_t line = CAMBER_NO_PATH;
     bool reversed;
     camber_status status = worlds ? read_path(m, polyline, &reversed) : CAMBER_OK;
     for (int world = 0; world < 3 && worlds && status == CAMBER_OK && m->path.count > 1; world++) {
@@ -214,16 +279,10 @@ static camber_status anchor_line(layout_maker *m, const camber_label_thing *t, s
         m->anchors.count = 0;
         status = middle ? camber_path_middle(&m->path, &moved, &m->anchors)
                         : camber_path_repeat(&m->path, &moved, &m->anchors);
-        camber_label_candidate on_line = {0};
-        if (status == CAMBER_OK && m->anchors.count)
-            status = keep_line(m, shift, reversed, &on_line.line);
-        for (size_t i = 0; i < m->anchors.count && status == CAMBER_OK; i++) {
-            double point[2];
-            camber_path_point(&m->path, m->anchors.items + i, point);
-            const double place[2] = {m->origin[0] + point[0] / scale, m->origin[1] + point[1] / scale};
-            on_line.segment = (uint32_t)m->anchors.items[i].segment;
-            status = add_candidate(m, t, place, shift, &on_line);
-        }
+        if (status == CAMBER_OK && m->anchors.count && line == CAMBER_NO_PATH)
+            status = keep_line(m, reversed, &line);
+        if (status == CAMBER_OK)
+            status = add_on_line(m, t, shift, line);
     }
     return status;
 }
@@ -285,7 +344,7 @@ static camber_status find_pole(layout_maker *m, size_t first, size_t end, double
                  : CAMBER_OK;
 }
 
-/* As find_pole. Poles are kept, because they are the same wherever the view is. */
+/* As find_pole. Poles are kept with forms, because they are the same wherever the view is. */
 static camber_status recall_pole(layout_maker *m, size_t first, size_t end, double pole[2], bool *found) {
     camber_label_layout *l = m->layout;
     const uint32_t known = camber_number_map_get(&l->pole_numbers, (uint32_t)first);
@@ -295,7 +354,7 @@ static camber_status recall_pole(layout_maker *m, size_t first, size_t end, doub
         return CAMBER_OK;
     }
     const camber_status status = find_pole(m, first, end, pole, found);
-    if (status != CAMBER_OK || !*found)
+    if (status != CAMBER_OK || !*found || !l->keeps_forms)
         return status;
     if (!camber_grow(l->context, &l->poles, &l->pole_capacity, 2 * (l->pole_count + 1), sizeof *l->poles) ||
         !camber_number_map_set(l->context, &l->pole_numbers, (uint32_t)first, (uint32_t)l->pole_count + 1))
@@ -320,14 +379,27 @@ static camber_status anchor_polygon(layout_maker *m, const camber_label_thing *t
     return anchor_point(m, t, place);
 }
 
+/* Whether a ring is an outer one. Points that are left out do not count, since they may have been dropped. */
+static bool is_outer(const layout_maker *m, size_t ring) {
+    const camber_features *f = m->layout->features;
+    const size_t first = f->offsets[ring], end = f->offsets[ring + 1];
+    double area = 0.0;
+    for (size_t i = first, before = first; i < end; i++) {
+        if (!is_kept(m, i, first, end))
+            continue;
+        const double *a = f->points + 2 * before, *b = f->points + 2 * i, *origin = f->points + 2 * first;
+        area += (a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]);
+        before = i;
+    }
+    return area > 0.0;
+}
+
 /* An outer ring is stored before its holes. */
 static camber_status anchor_areas(layout_maker *m, const camber_label_thing *t) {
-    const camber_features *f = m->layout->features;
     camber_status status = CAMBER_OK;
     for (size_t p = t->first_polyline, next; p < t->end_polyline && status == CAMBER_OK; p = next) {
         next = p + 1;
-        while (next < t->end_polyline &&
-               camber_ring_area(f->points + 2 * f->offsets[next], f->offsets[next + 1] - f->offsets[next]) <= 0.0)
+        while (next < t->end_polyline && !is_outer(m, next))
             next++;
         status = anchor_polygon(m, t, p, next);
     }
@@ -392,17 +464,19 @@ static camber_status make_form(layout_maker *m, uint32_t *form) {
     return camber_label_form_make(m->layout, m->look, class, form);
 }
 
-/* known: the forms of the layer's classes; 0: not found yet, otherwise the form's number + 2, or 1 for none. */
+/* known: the forms of the layer's classes; 0: not found yet, otherwise the form's number + 2, or 1 for none. NULL: they
+ * are not kept. */
 static camber_status lay_out_class(layout_maker *m, uint32_t *known) {
     camber_status status = CAMBER_OK;
-    if (known[m->class] == 1)
+    if (known && known[m->class] == 1)
         return CAMBER_OK;
-    m->form = known[m->class] - 2;
-    if (!known[m->class]) {
+    if (known && known[m->class]) {
+        m->form = known[m->class] - 2;
+    } else {
         status = make_form(m, &m->form);
-        if (status == CAMBER_OK)
+        if (status == CAMBER_OK && known)
             known[m->class] = m->form == CAMBER_NO_FORM ? 1 : m->form + 2;
-        if (m->form != CAMBER_NO_FORM)
+        if (status == CAMBER_OK && known && m->form != CAMBER_NO_FORM)
             m->layout->class_states[m->class] = CLASS_SPEAKS;
     }
     if (status != CAMBER_OK || m->form == CAMBER_NO_FORM)
@@ -418,12 +492,12 @@ static camber_status lay_out_class(layout_maker *m, uint32_t *known) {
 static camber_status list_classes(layout_maker *m) {
     camber_label_layout *l = m->layout;
     const camber_label_things *things = l->things;
-    if (!l->class_states &&
+    if (l->keeps_forms && !l->class_states &&
         !(l->class_states = camber_alloc_zero(l->context, l->features->class_count, sizeof *l->class_states)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < things->count; i = things->class_first[things->items[i].class + 1]) {
         const uint32_t class = things->items[i].class;
-        if (l->class_states[class] == CLASS_IS_SILENT)
+        if (l->keeps_forms && l->class_states[class] == CLASS_IS_SILENT)
             continue;
         if (!camber_grow(l->context, &m->classes, &m->class_capacity, m->class_count + 1, sizeof *m->classes))
             return CAMBER_ERROR_MEMORY;
@@ -460,8 +534,8 @@ static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
         return CAMBER_OK;
     const camber_layer_look look = camber_style_layer_look(layer, zoom);
     const size_t first = l->candidate_count;
-    uint32_t *known = known_forms(l, index);
-    camber_status status = known ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    uint32_t *known = l->keeps_forms ? known_forms(l, index) : NULL;
+    camber_status status = known || !l->keeps_forms ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     m->look = &look;
     for (size_t i = 0; i < m->class_count && status == CAMBER_OK; i++) {
         m->class = m->classes[i];
@@ -484,17 +558,14 @@ camber_box camber_label_seen(const camber_view *view) {
 
 camber_status camber_label_layout_make(camber_label_layout *layout) {
     const double zoom = camber_view_style_zoom(layout->view);
-    layout_maker m = {.layout = layout,
-                      .corners = find_corners(layout->view),
-                      .least_importance = SIMPLIFY_PX / layout->view->scale_px,
-                      .anchors.context = layout->context};
+    layout_maker m = {.layout = layout, .corners = find_corners(layout->view), .anchors.context = layout->context};
     camber_status status = list_classes(&m);
     layout->lens = camber_view_lens_of(layout->view);
     layout->layer_count = layout->candidate_count = layout->line_count = layout->line_point_count = 0;
     set_reach(&m, REACH_PX * layout->view->ratio);
     for (size_t i = 0; i < layout->features->style->layer_count && m.class_count && status == CAMBER_OK; i++)
         status = lay_out_layer(&m, i, zoom);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && layout->keeps_forms)
         note_silent_classes(&m);
     camber_free(layout->context, m.classes);
     camber_free(layout->context, m.path.points);

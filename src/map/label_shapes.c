@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* How far an outline's segments may be from its curves, px. */
-static const double TOLERANCE_PX = 1.0 / 32.0;
 /* A halo's edge fades over its blur times this, as in MapLibre, whose glyphs are distances. */
 static const float BLUR_SCALE = 1.19f;
 /* The largest width of a stroke. */
@@ -44,10 +42,18 @@ static void unproject(const camber_view_lens *lens, float p[2]) {
     p[1] = (float)(lens->half_height + plane_y);
 }
 
-/* Finds the point of the plane at which the point u, v of an item is drawn. t: NULL if the item is in the plane. */
+/* Distances from an item's origin are multiples of 1 / STEPS px, so that its points are the same in all pictures that
+ * are whole px apart: floats hold such positions exactly, up to 4096 px. */
+static const float STEPS = 4096.0f;
+
+static float snap(float px) {
+    return fabsf(px) < 2048.0f ? floorf(px * STEPS + 0.5f) / STEPS : px;
+}
+
+/* Finds the point of the plane at which the point u, v of an item is drawn. lens: NULL if the item is in the plane. */
 static void find_point(const camber_label_item *item, const camber_view_lens *lens, float u, float v, float p[2]) {
-    p[0] = item->x + item->xx * u + item->xy * v;
-    p[1] = item->y + item->yx * u + item->yy * v;
+    p[0] = item->x + snap(item->xx * u + item->xy * v);
+    p[1] = item->y + snap(item->yx * u + item->yy * v);
     if (lens)
         unproject(lens, p);
 }
@@ -75,12 +81,11 @@ static camber_status add_outline(rings *r, const camber_outline *outline, const 
 
 static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item,
                                const camber_view_lens *lens) {
-    const double size_px = fmax(hypot((double)item->xx, (double)item->yx), hypot((double)item->xy, (double)item->yy));
+    const float size_px = fmaxf(hypotf(item->xx, item->yx), hypotf(item->xy, item->yy));
     camber_outline outline;
-    if (!(size_px > 0.0))
+    if (!(size_px > 0.0f))
         return CAMBER_OK;
-    const camber_status status =
-        camber_fonts_get_outline(fonts, item->glyph, (float)(TOLERANCE_PX / size_px), &outline);
+    const camber_status status = camber_fonts_get_sized_outline(fonts, item->glyph, size_px, &outline);
     return status == CAMBER_OK ? add_outline(r, &outline, item, lens) : status;
 }
 

@@ -5,6 +5,7 @@
 #include "map/label_things.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static bool is_finite(const double *point) {
     return isfinite(point[0]) && isfinite(point[1]);
@@ -92,10 +93,64 @@ camber_status camber_label_things_select(const camber_label_things *all, const c
     return CAMBER_OK;
 }
 
+/* ---- Middles ---- */
+
+enum { CODE_LEVEL = 24 };
+
+/* Interleaves the bits of a position, so that the positions of a square are consecutive. */
+static uint64_t code_of(uint32_t column, uint32_t row) {
+    uint64_t code = 0;
+    for (int i = 0; i < CODE_LEVEL; i++)
+        code |= (uint64_t)(column >> i & 1) << (2 * i) | (uint64_t)(row >> i & 1) << (2 * i + 1);
+    return code;
+}
+
+static uint32_t position_of(double share) {
+    const double most = exp2(CODE_LEVEL);
+    return (uint32_t)fmin(fmax(floor(share * most), 0.0), most - 1.0);
+}
+
+static int compare_codes(const void *left, const void *right) {
+    uint64_t a, b;
+    memcpy(&a, left, sizeof a);
+    memcpy(&b, right, sizeof b);
+    return a < b ? -1 : a > b;
+}
+
+static size_t count_below(const camber_label_things *things, uint64_t code) {
+    size_t low = 0, high = things->count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (things->codes[middle] < code)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+camber_status camber_label_things_count(camber_label_things *things, const camber_label_square *square, size_t *count) {
+    if (!things->codes) {
+        if (!(things->codes = camber_alloc(things->context, things->count, sizeof *things->codes)))
+            return CAMBER_ERROR_MEMORY;
+        for (size_t i = 0; i < things->count; i++) {
+            const camber_box *box = &things->items[i].box;
+            const double x = 0.5 * (box->x0 + box->x1);
+            things->codes[i] = code_of(position_of(x - floor(x)), position_of(0.5 * (box->y0 + box->y1)));
+        }
+        qsort(things->codes, things->count, sizeof *things->codes, compare_codes);
+    }
+    const int shift = CODE_LEVEL - square->level;
+    const uint64_t first = code_of(square->column << shift, square->row << shift);
+    *count = count_below(things, first + (UINT64_C(1) << (2 * shift))) - count_below(things, first);
+    return CAMBER_OK;
+}
+
 void camber_label_things_free(camber_label_things *things) {
     if (!things->context)
         return;
     camber_free(things->context, things->items);
     camber_free(things->context, things->class_first);
+    camber_free(things->context, things->codes);
     *things = (camber_label_things){0};
 }

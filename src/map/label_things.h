@@ -18,6 +18,7 @@ typedef struct camber_label_things {
     size_t count, capacity;
     size_t *class_first; /* class_count + 1: class c has the things [class_first[c], class_first[c + 1]) */
     size_t class_count;
+    uint64_t *codes; /* of all middles, sorted; NULL: not made yet */
 } camber_label_things;
 
 /* Finds the things of a set. Points may be dropped from the set later (camber_features_thin), but no features may be
@@ -30,6 +31,14 @@ camber_status camber_label_things_find(const camber_features *features, const ca
 camber_status camber_label_things_select(const camber_label_things *all, const camber_box *seen,
                                          camber_label_things *things);
 void camber_label_things_free(camber_label_things *things);
+/* A square of the map: 1 / 2^level of the world wide. */
+typedef struct camber_label_square {
+    int level; /* 0 to 24 */
+    uint32_t column, row;
+} camber_label_square;
+
+/* Counts the things whose middles are in a square. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_label_things_count(camber_label_things *things, const camber_label_square *square, size_t *count);
 /* Returns in which copies of the world a box touches another: bit i stands for the copy that is moved by i - 1. */
 uint8_t camber_label_find_worlds(const camber_box *seen, const camber_box *box);
 /* Returns the box around some polylines. It is empty if none of their points is finite. */

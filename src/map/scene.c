@@ -154,14 +154,17 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
     return status;
 }
 
-/* Places the labels of the view and makes their shapes, if fonts were read with the features. */
-static camber_status make_labels(camber_scene *scene) {
+/* Places the labels of the view, or takes those of the zoom, and makes their shapes, if fonts were read with the
+ * features. placed NULL: the labels are those of the view. */
+static camber_status make_labels(camber_scene *scene, const camber_window_labels *placed) {
     const camber_features *features = scene->zoom->features;
     camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
     camber_status status = CAMBER_OK;
-    if (scene->use == CAMBER_SCENE_ONE_VIEW)
+    if (placed)
+        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW)
         status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     else if (scene->book || (status = camber_label_book_create(features, &scene->book)) == CAMBER_OK)
         status = camber_label_book_place(scene->book, &scene->view, &labels);
@@ -198,7 +201,7 @@ static camber_status make_view_scene(camber_scene *scene, const camber_features 
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
-    status = make_labels(scene); /* first, because making the network may free the features' points */
+    status = make_labels(scene, NULL); /* first, because making the network may free the features' points */
     if (status != CAMBER_OK)
         return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
@@ -300,7 +303,8 @@ camber_status camber_scene_create_last(camber_features *features, const camber_s
     return create(features, &once, features, scene);
 }
 
-camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
+camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window,
+                                         const camber_window_labels *labels, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene) {
     camber_plan_entries listed = {0};
     camber_scene *made = camber_alloc_zero(zoom->context, 1, sizeof *made);
@@ -311,6 +315,8 @@ camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_vi
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, window, CAMBER_NETWORK_WINDOW, &listed, &made->geometry);
     camber_plan_entries_free(&listed);
+    if (status == CAMBER_OK && labels && labels->labels)
+        status = make_labels(made, labels);
     if (status == CAMBER_OK)
         status = make_pair_passes(made);
     if (status == CAMBER_OK)
@@ -430,8 +436,8 @@ static void move_fills(camber_scene *scene) {
 static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
     camber_mesh *meshes[] = {mesh, NULL, NULL};
     for (size_t i = 0; i < list->count; i++) {
-        for (size_t k = 1; k <= list->meshes[i] && !meshes[k]; k++)
-            if (camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
+        for (size_t k = 1; k <= list->meshes[i] && meshes[k - 1]; k++)
+            if (!meshes[k] && camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
                 meshes[k] = NULL;
         list->passes[i].mesh = meshes[list->meshes[i]];
         list->passes[i].kind = list->passes[i].mesh || !list->meshes[i] ? list->passes[i].kind : CAMBER_PASS_FILL;

@@ -153,6 +153,23 @@ static camber_status fill_index(camber_fonts *fonts) {
     return fonts->is_filled ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
+camber_status camber_fonts_list(camber_fonts *fonts, size_t n, camber_font_info *info) {
+    const camber_status status = fill_index(fonts);
+    if (status)
+        return status;
+    *info = (camber_font_info){0};
+    if (n >= fonts->index.count)
+        return CAMBER_OK;
+    const camber_font_entry *entry = &fonts->index.entries[n];
+    const char *name = entry->name ? entry->name : camber_font_pattern_name(entry->pattern);
+    *info = (camber_font_info){.name = name && *name ? name : entry->path,
+                               .path = entry->origin == CAMBER_FONT_SHIPPED ? NULL : entry->path,
+                               .weight = entry->style.weight,
+                               .width = entry->style.width,
+                               .italic = entry->style.is_italic};
+    return CAMBER_OK;
+}
+
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code) {
     return source->face ? camber_face_has(source->face, code) : camber_glyph_ranges_has(source->ranges, code);
 }
@@ -469,14 +486,26 @@ camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, cons
 
 /* ---- Outlines ---- */
 
-static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int exponent, camber_made_outline **made) {
+/* How far an outline's segments may be from its curves in a text of a given size, px. */
+static const float TOLERANCE_PX = 1.0f / 32.0f;
+/* Stem darkening. In a text of fewer px per em than this, strokes are widened: the smaller it is, the more. */
+static const float DARKENED_BELOW_PX = 20.0f;
+static const float DARKENING_PX = 0.2f; /* for a text of 0 px */
+/* Outlines are made in steps of weight, because texts in perspective have very many sizes. */
+static const float WEIGHT_STEP_EM = 1.0f / 1024.0f;
+static const float LARGEST_WEIGHT = 32.0f;
+
+static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int exponent, unsigned weight,
+                                  camber_made_outline **made) {
     const camber_font_glyph *of = &fonts->glyphs[glyph];
     const camber_glyph_source *source = &fonts->sources[of->source];
     camber_made_outline *node = camber_alloc_zero(fonts->context, 1, sizeof *node);
     if (!node)
         return CAMBER_ERROR_MEMORY;
     node->exponent = exponent;
-    camber_outline_maker maker = {.context = fonts->context, .tolerance_em = ldexpf(1.0f, exponent)};
+    node->weight = weight;
+    camber_outline_maker maker = {
+        .context = fonts->context, .tolerance_em = ldexpf(1.0f, exponent), .wider_em = (float)weight * WEIGHT_STEP_EM};
     if (source->face)
         camber_outline_draw_glyph(&maker, source->face, of->number);
     else
@@ -490,27 +519,42 @@ static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int expon
     return CAMBER_OK;
 }
 
-camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
-                                       camber_outline *outline) {
+static camber_status find_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em, unsigned weight,
+                                  camber_outline *outline) {
     int exponent;
     assert(glyph < fonts->glyph_count);
     /* One outline serves all tolerances between two powers of 2. Outlines from ranges have no curves, so one serves
      * all. */
     frexpf(tolerance_em > 0.0f ? fminf(fmaxf(tolerance_em, 0x1p-20f), 1.0f) : 1.0f / 256.0f, &exponent);
     exponent--;
-    if (fonts->sources[fonts->glyphs[glyph].source].ranges)
+    if (fonts->sources[fonts->glyphs[glyph].source].ranges) {
         exponent = 0;
+        weight = 0;
+    }
     for (const camber_made_outline *made = fonts->glyphs[glyph].outlines; made; made = made->next)
-        if (made->exponent == exponent) {
+        if (made->exponent == exponent && made->weight == weight) {
             *outline = made->outline;
             return CAMBER_OK;
         }
     camber_made_outline *made = NULL;
-    const camber_status status = make_outline(fonts, glyph, exponent, &made);
+    const camber_status status = make_outline(fonts, glyph, exponent, weight, &made);
     if (status)
         return status;
     made->next = fonts->glyphs[glyph].outlines;
     fonts->glyphs[glyph].outlines = made;
     *outline = made->outline;
     return CAMBER_OK;
+}
+
+camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
+                                       camber_outline *outline) {
+    return find_outline(fonts, glyph, tolerance_em, 0, outline);
+}
+
+camber_status camber_fonts_get_sized_outline(camber_fonts *fonts, uint32_t glyph, float size_px,
+                                             camber_outline *outline) {
+    assert(size_px > 0.0f);
+    const float wider_px = DARKENING_PX * fmaxf(1.0f - size_px / DARKENED_BELOW_PX, 0.0f);
+    const float weight = fminf(wider_px / size_px / WEIGHT_STEP_EM + 0.5f, LARGEST_WEIGHT);
+    return find_outline(fonts, glyph, TOLERANCE_PX / size_px, (unsigned)weight, outline);
 }

@@ -142,6 +142,7 @@ static void test_moves(void **state) {
     camber_scene *map = load(s->context, &CROSSING, CAMBER_THEME_LIGHT, &style, &features);
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->on.device, NULL, &mesh), CAMBER_OK);
+    assert_int_equal(camber_scene_project(map), CAMBER_OK); /* the mesh holds no network yet */
     const size_t pieces = polylines_of(map, mesh);
     assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     const size_t entries = polylines_of(map, mesh);

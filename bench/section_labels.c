@@ -263,7 +263,6 @@ typedef struct sheet {
     bench *b;
     camber_fonts *fonts;
     camber_text *texts[WORDS];
-    camber_view view;
     camber_labels labels;
     camber_label_item *items;
     bench_label *points;
@@ -309,8 +308,6 @@ static camber_status add_label(sheet *s, size_t number) {
 static camber_status make_sheet(sheet *s) {
     static camber_label_look look = {.color = {0, 0, 0, 1}, .halo_color = {1, 1, 1, 1}, .halo_width_px = 1};
     static camber_label_layer layer = {.glyph_count = GLYPHS};
-    const camber_view_desc view = {
-        .kind = CAMBER_VIEW_CENTER, .zoom = 15, .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX};
     s->items = calloc(GLYPHS, sizeof *s->items);
     s->points = calloc(LABELS_MAX, sizeof *s->points);
     s->labels = (camber_labels){.context = s->b->context,
@@ -320,8 +317,6 @@ static camber_status make_sheet(sheet *s) {
                                 .looks = &look,
                                 .look_count = 1};
     camber_status status = s->items && s->points ? shape_words(s) : CAMBER_ERROR_MEMORY;
-    if (status == CAMBER_OK)
-        status = camber_view_create(s->b->context, &view, &s->view);
     for (size_t i = 0; i < LABELS_MAX && s->labels.item_count < GLYPHS && status == CAMBER_OK; i++)
         status = add_label(s, i);
     return status;
@@ -347,7 +342,7 @@ static camber_status draw_sheet(sheet *s, bool counts) {
     clocks start = read_clocks();
     const clocks begin = start;
     sheet unused = {0}, *to = counts ? s : &unused;
-    camber_status status = camber_label_shapes_make(&s->labels, &s->view, s->fonts, &shapes);
+    camber_status status = camber_label_shapes_make(&s->labels, s->fonts, &shapes);
     add_since(&to->shapes, start, 1);
     start = read_clocks();
     if (status == CAMBER_OK)

@@ -32,6 +32,8 @@ static int compare(const void *a, const void *b) {
         return c->rank < d->rank ? -1 : 1;
     if (c->x < d->x || c->x > d->x)
         return c->x < d->x ? -1 : 1;
+    if (c->y < d->y || c->y > d->y)
+        return c->y < d->y ? -1 : 1;
     return c < d ? -1 : c > d;
 }
 

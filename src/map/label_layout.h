@@ -87,7 +87,7 @@ typedef struct camber_label_candidate {
     uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it is on */
     double x, y;            /* of the anchor, px of the plane */
     double line_x, line_y;  /* of the line's first point, relative to the anchor */
-    uint64_t rank;          /* decides between equal candidates: a hash of its position and words */
+    uint64_t rank; /* decides between equal candidates: its turn on its line, then a hash of its position and words */
     /* Placement fills these in. */
     bool shows_text, shows_icon, vertical;
     bool unsettled; /* in a domain: what is shown may depend on labels outside it */
@@ -141,6 +141,8 @@ typedef struct camber_label_layout {
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
+/* Returns how many device px a CSS px of the last whole zoom has in the view: from 1 to less than 2 times the ratio. */
+double camber_label_whole_zoom_px(const camber_view *view);
 /* Finds the candidates of a view or of a domain, and forgets those that were found before. The caller has set the
  * members from context to sprites. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);

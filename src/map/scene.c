@@ -164,12 +164,14 @@ static camber_status make_labels(camber_scene *scene, const camber_window_labels
     camber_status status = CAMBER_OK;
     if (placed)
         status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW && camber_view_has_zoom_labels(features->style, &scene->view))
+        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &labels);
     else if (scene->use == CAMBER_SCENE_ONE_VIEW)
         status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     else if (scene->book || (status = camber_label_book_create(features, &scene->book)) == CAMBER_OK)
         status = camber_label_book_place(scene->book, &scene->view, &labels);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
     scene->label_count = labels.label_count;
     if (labels.context)
         camber_labels_free(&labels);

@@ -29,8 +29,9 @@ typedef struct label_block label_block;
 struct label_block {
     label_block *next; /* less recently used */
     camber_label_square square;
+    camber_box box; /* of the square, or of a picture, px of the world */
     camber_label_domain domain;
-    camber_label_layout layout; /* with the labels that touch the square; boxes are around their pixels */
+    camber_label_layout layout; /* with the labels that touch the box; their boxes are around their pixels */
     size_t bytes;
 };
 
@@ -150,7 +151,7 @@ static camber_box find_pixels(const camber_label_layout *layout, const camber_la
 /* ---- Placing a block ---- */
 
 /* Whether all labels that may touch the block are settled. */
-static bool is_settled(const label_block *block, const camber_box *square) {
+static bool is_settled(const label_block *block) {
     const camber_label_layout *l = &block->layout;
     for (size_t i = 0; i < l->candidate_count; i++) {
         const camber_label_candidate *c = l->candidates + i;
@@ -160,14 +161,14 @@ static bool is_settled(const label_block *block, const camber_box *square) {
         all.shows_text = l->forms[c->form].text != NULL;
         all.shows_icon = l->forms[c->form].icon != NULL;
         const camber_box box = find_pixels(l, &all);
-        if (find_copies(block, &box, square))
+        if (find_copies(block, &box, &block->box))
             return false;
     }
     return true;
 }
 
 static camber_status place_with_margin(camber_zoom_labels *z, label_block *block, double margin_px, bool *settled) {
-    const camber_box square = box_of(z, &block->square, 0.0), known = box_of(z, &block->square, margin_px);
+    const camber_box known = widen(&block->box, margin_px);
     const double world = z->view.scale_px;
     camber_label_things near = {0};
     block->domain = (camber_label_domain){.known = known, .world_px = world};
@@ -197,7 +198,7 @@ static camber_status place_with_margin(camber_zoom_labels *z, label_block *block
         status = camber_label_place_all(&block->layout);
     block->layout.things = NULL;
     camber_label_things_free(&near);
-    *settled = status == CAMBER_OK && is_settled(block, &square);
+    *settled = status == CAMBER_OK && is_settled(block);
     return status;
 }
 
@@ -257,7 +258,7 @@ static size_t count_bytes(const camber_label_layout *l) {
 }
 
 /* Drops all labels but those that are shown and touch the block. */
-static camber_status keep_shown(label_block *block, const camber_box *square) {
+static camber_status keep_shown(label_block *block) {
     camber_label_layout *l = &block->layout;
     uint32_t *numbers = camber_alloc_zero(l->context, l->form_count + l->line_count, sizeof *numbers);
     size_t kept = 0;
@@ -272,7 +273,7 @@ static camber_status keep_shown(label_block *block, const camber_box *square) {
             if (!c.shows_text && !c.shows_icon)
                 continue;
             c.box = find_pixels(l, &c);
-            if (!find_copies(block, &c.box, square))
+            if (!find_copies(block, &c.box, &block->box))
                 continue;
             numbers[c.form] = 1;
             if (c.line != CAMBER_NO_PATH)
@@ -296,19 +297,18 @@ static camber_status keep_shown(label_block *block, const camber_box *square) {
     return status;
 }
 
-static camber_status make_block(camber_zoom_labels *z, const camber_label_square *square, label_block **made) {
-    const camber_box box = box_of(z, square, 0.0);
+static camber_status make_block(camber_zoom_labels *z, const camber_box *box, label_block **made) {
     camber_status status = CAMBER_OK;
     bool settled = false;
     label_block *block = camber_alloc_zero(z->context, 1, sizeof *block);
     if (!block)
         return CAMBER_ERROR_MEMORY;
-    block->square = *square;
+    block->box = *box;
     block->layout.context = z->context;
     for (double margin = FIRST_MARGIN_PX; !settled && status == CAMBER_OK; margin *= WIDER)
         status = place_with_margin(z, block, margin, &settled);
     if (status == CAMBER_OK)
-        status = keep_shown(block, &box);
+        status = keep_shown(block);
     if (status == CAMBER_OK)
         *made = block;
     else
@@ -361,7 +361,10 @@ static camber_status get_block(camber_zoom_labels *z, const camber_label_square 
         block = *at;
         *at = block->next;
     } else {
-        status = make_block(z, square, &block);
+        const camber_box box = box_of(z, square, 0.0);
+        status = make_block(z, &box, &block);
+        if (status == CAMBER_OK)
+            block->square = *square;
     }
     if (status != CAMBER_OK)
         return status;
@@ -416,27 +419,83 @@ static camber_status select_labels(const label_block *block, const camber_box *b
     return CAMBER_OK;
 }
 
-camber_status camber_zoom_labels_draw(camber_zoom_labels *z, const camber_label_square *square,
-                                      const camber_view *picture, camber_labels *drawn) {
-    const camber_label_window window = {.scale = picture->scale_px / z->view.scale_px,
-                                        .origin_px = {picture->x * picture->scale_px - 0.5 * picture->width,
-                                                      picture->y * picture->scale_px - 0.5 * picture->height}};
-    label_block *block;
-    *drawn = (camber_labels){.context = z->context};
-    camber_status status = find_block(z, square, &block);
-    if (status != CAMBER_OK)
-        return status;
-    const camber_box box = {window.origin_px[0] / window.scale, window.origin_px[1] / window.scale,
-                            (window.origin_px[0] + picture->width) / window.scale,
-                            (window.origin_px[1] + picture->height) / window.scale};
+static camber_label_window window_of(const camber_zoom_labels *z, const camber_view *picture) {
+    return (camber_label_window){.scale = picture->scale_px / z->view.scale_px,
+                                 .origin_px = {picture->x * picture->scale_px - 0.5 * picture->width,
+                                               picture->y * picture->scale_px - 0.5 * picture->height}};
+}
+
+/* Returns the box of a picture, px of the world. */
+static camber_box picture_box(const camber_label_window *window, const camber_view *picture) {
+    const double left = window->origin_px[0], top = window->origin_px[1];
+    const camber_box box = {left, top, left + picture->width, top + picture->height};
+    return scale(&box, 1.0 / window->scale);
+}
+
+/* Makes the items of a block's labels in a picture. */
+static camber_status draw_block(const label_block *block, const camber_label_window *window,
+                                const camber_view *picture, camber_labels *drawn) {
+    const camber_box box = picture_box(window, picture);
     camber_label_layout layout = block->layout;
     layout.domain = &block->domain;
-    layout.window = &window;
-    status = select_labels(block, &box, &layout);
+    layout.window = window;
+    camber_status status = select_labels(block, &box, &layout);
     if (status == CAMBER_OK)
         status = camber_label_items_make(&layout, drawn);
-    camber_free(z->context, layout.layers);
-    camber_free(z->context, layout.candidates);
+    camber_free(layout.context, layout.layers);
+    camber_free(layout.context, layout.candidates);
+    return status;
+}
+
+camber_status camber_zoom_labels_draw(camber_zoom_labels *z, const camber_label_square *square,
+                                      const camber_view *picture, camber_labels *drawn) {
+    const camber_label_window window = window_of(z, picture);
+    label_block *block;
+    *drawn = (camber_labels){.context = z->context};
+    const camber_status status = find_block(z, square, &block);
+    return status == CAMBER_OK ? draw_block(block, &window, picture, drawn) : status;
+}
+
+/* ---- Single pictures ---- */
+
+static bool avoids_edges(const camber_style *style) {
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (style->layers[i].kind == CAMBER_LAYER_SYMBOL && style->layers[i].properties[CAMBER_SYMBOL_AVOID_EDGES])
+            return true;
+    return false;
+}
+
+bool camber_view_has_zoom_labels(const camber_style *style, const camber_view *view) {
+    const double ratio = view->scale_px / (WORLD_PX * exp2(view->zoom));
+    return view->zoom >= 0.0 && fabs(view->zoom - floor(view->zoom + 0.5)) < 1e-9 && fabs(view->bearing_deg) <= 0.0 &&
+           !(view->pitch_deg > 0.0) && fabs(ratio - view->ratio) < 1e-9 * ratio && view->width <= view->scale_px &&
+           !avoids_edges(style);
+}
+
+camber_status camber_zoom_labels_place_view(const camber_features *features, const camber_view *view,
+                                            double simplify_px, camber_labels *drawn) {
+    camber_label_things things;
+    camber_zoom_labels *z = NULL;
+    label_block *block = NULL;
+    *drawn = (camber_labels){.context = features->context};
+    camber_status status = camber_label_things_find(features, NULL, &things);
+    const camber_zoom_labels_desc desc = {.features = features,
+                                          .things = &things,
+                                          .zoom = floor(view->zoom + 0.5),
+                                          .least_importance = (double)(float)(simplify_px / view->scale_px)};
+    if (status == CAMBER_OK)
+        status = camber_zoom_labels_create(&desc, &z);
+    if (status == CAMBER_OK) {
+        const camber_label_window window = window_of(z, view);
+        const camber_box box = picture_box(&window, view);
+        status = make_block(z, &box, &block);
+        if (status == CAMBER_OK)
+            status = draw_block(block, &window, view, drawn);
+    }
+    if (block)
+        free_block(block);
+    camber_zoom_labels_destroy(z);
+    camber_label_things_free(&things);
     return status;
 }
 

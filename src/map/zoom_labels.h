@@ -32,6 +32,14 @@ void camber_zoom_labels_destroy(camber_zoom_labels *labels);
 camber_status camber_zoom_labels_draw(camber_zoom_labels *labels, const camber_label_square *square,
                                       const camber_view *picture, camber_labels *drawn);
 
+/* Whether a picture has the labels of its zoom: the zoom is whole, the picture is neither turned nor tilted, nor wider
+ * than the world, and no layer keeps its labels off the picture's edges. */
+bool camber_view_has_zoom_labels(const camber_style *style, const camber_view *view);
+/* Makes the items of the labels in such a picture, as far as the features around it are known. Call camber_labels_free
+ * even after a failure. Returns the errors of camber_zoom_labels_draw. */
+camber_status camber_zoom_labels_place_view(const camber_features *features, const camber_view *view,
+                                            double simplify_px, camber_labels *drawn);
+
 /* A label that is shown. */
 typedef struct camber_shown_label {
     camber_box box;      /* around its pixels and their halos, or a little larger; world coordinates */

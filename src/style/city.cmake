@@ -170,8 +170,7 @@ set(city_works_transportation [=[["in", "_construction", ["to-string", ["get", "
 set(city_building_tiles building buildings)
 set(city_hedge_osm [=[["any", ["==", ["get", "barrier"], "hedge"], ["==", ["get", "natural"], "tree_row"]]]=])
 
-# The first zoom at which a kind of small areas is drawn. It sets an opacity and not a minzoom, because a scene keeps
-# its network as long as the same layers have features.
+# The first zoom at which a kind of small areas is drawn.
 set(city_zoom_pitch 13)
 set(city_zoom_pier 11)
 set(city_zoom_apron 10)
@@ -362,10 +361,10 @@ set(city_template_works [=[
      "paint": {"line-color": "@WORKS@", "line-dasharray": [2, 1.5],
                "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 12.9, 0, 13, 0.8, 14, 1.5, 16, 3, 20, 14]}}]=])
 set(city_template_hedge [=[
-    {"id": "@ID@", "type": "line",@HEAD@ "minzoom": 17,
+    {"id": "@ID@", "type": "line",@HEAD@
      "filter": ["all", @NO_AREA@, @TEST@],
      "layout": {"line-cap": "round", "line-join": "round", "line-round-limit": 1},
-     "paint": {"line-color": "@HEDGE@", "line-width": ["interpolate", ["exponential", 1.6], ["zoom"], 17, 2, 20, 8]}}]=])
+     "paint": {"line-color": "@HEDGE@", "line-width": ["interpolate", ["exponential", 1.6], ["zoom"], 16.9, 0, 17, 2, 20, 8]}}]=])
 
 # Appends the rivers that are not in tunnels, for OpenStreetMap's keys and for the layers of each schema. Areas get no
 # line around them.

@@ -395,19 +395,30 @@ static bool is_pictograph(uint32_t code) {
     return (code >= 0x1f000 && code <= 0x1faff) || (code >= 0x2600 && code <= 0x27bf);
 }
 
-/* Finds the source for a character that no font has: it is drawn as the box of the stack's first font. */
-static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
-    const bool is_left_out = is_pictograph(code);
+/* Says once for each script which character of it has no font, and which package has one. */
+static void tell_missing_character(camber_fonts *fonts, uint32_t code) {
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
+    const bool is_cjk = camber_is_ideographic(code) || script == HB_SCRIPT_HANGUL;
     char tag[5] = {0};
     hb_tag_to_string(hb_script_to_iso15924_tag(script), tag);
-    if (is_news(fonts, is_left_out ? 1 : camber_mix(2, (uint64_t)script)))
+    if (is_pictograph(code)) {
+        if (is_news(fonts, 1))
+            camber_log(fonts->context, CAMBER_LOG_WARNING,
+                       "no font has an outline of the pictograph U+%04X: such characters are left out (Debian has "
+                       "outlines in fonts-noto-core and fonts-symbola)",
+                       (unsigned)code);
+    } else if (is_news(fonts, is_cjk ? 3 : camber_mix(2, (uint64_t)script))) {
+        const char *name = is_cjk ? "Chinese, Japanese and Korean" : camber_get_script_name(script, NULL);
         camber_log(fonts->context, CAMBER_LOG_WARNING,
-                   is_left_out ? "no font has an outline of the pictograph U+%04X: such characters are left out"
-                               : "no font has U+%04X (script %s): its characters are drawn as boxes (Debian: "
-                                 "fonts-noto-core, fonts-noto-cjk)",
-                   (unsigned)code, tag);
-    if (is_left_out)
+                   "no font has U+%04X (script: %s): such characters are drawn as boxes (Debian has them in %s)",
+                   (unsigned)code, name ? name : tag, is_cjk ? "fonts-noto-cjk" : "fonts-noto-core");
+    }
+}
+
+/* Finds the source for a character that no font has: it is drawn as the box of the stack's first font. */
+static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
+    tell_missing_character(fonts, code);
+    if (is_pictograph(code))
         return CAMBER_OK;
     if (!stack->named_count)
         return find_shipped(fonts, stack, source);

@@ -65,15 +65,11 @@ static void free_sheet(sheet *s) {
 }
 
 static picture draw(const fixture *f, sheet *s, double pitch_deg) {
-    const camber_view_desc desc = {
-        .kind = CAMBER_VIEW_CENTER, .zoom = 4, .width = SIDE, .height = SIDE, .pitch_deg = pitch_deg};
-    camber_view view;
     camber_label_shapes shapes;
     camber_mesh *mesh = NULL, *texts = NULL;
     camber_pass passes[CAMBER_LABEL_PASSES];
     camber_label_mesh meshes[CAMBER_LABEL_PASSES];
-    assert_int_equal(camber_view_create(f->context, &desc, &view), CAMBER_OK);
-    assert_int_equal(camber_label_shapes_make(&s->labels, &view, s->fonts, &shapes), CAMBER_OK);
+    assert_int_equal(camber_label_shapes_make(&s->labels, s->fonts, &shapes), CAMBER_OK);
     assert_int_equal(camber_mesh_create(f->on.device, fixture_any(f), &mesh), CAMBER_OK);
     assert_int_equal(camber_label_shapes_tessellate(&shapes, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     assert_int_equal(camber_mesh_get_companion(mesh, &texts), CAMBER_OK);
@@ -192,6 +188,7 @@ static void test_halos(void **state) {
 /* Upright labels are where their items say in the picture, whatever the pitch. */
 static void test_pitch(void **state) {
     compare(*state, false, 40, 10, 1.6);
+    compare(*state, true, 40, 64, 2.5);
 }
 
 int main(void) {

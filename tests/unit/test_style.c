@@ -501,7 +501,7 @@ static void check_city(const camber_style *style) {
         {"", "man_made=pier", "pier-line"},
         {"", "aeroway=runway", "runway-line"},
         {"", "aerialway=gondola", "lift-line lift-line-ties"},
-        {"", "barrier=hedge", ""},
+        {"", "barrier=hedge", "hedge-line"},
         {"transportation_name", "class=primary", ""},
         {"water_name", "class=lake", ""},
         {"", "building=yes", ""},
@@ -830,6 +830,48 @@ static void test_warnings(void **state) {
                                    "without it");
     assert_int_equal(camber_style_layer_paint(f.style->layers, 9.9, NULL).cap, CAMBER_CAP_BUTT);
     assert_int_equal(camber_style_layer_paint(f.style->layers, 10.0, NULL).cap, CAMBER_CAP_ROUND);
+    teardown(&f);
+}
+
+/* A layer with an operator of the specification that is not supported is left out; the others are drawn. */
+static void test_left_out(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    assert_int_equal(
+        parse(&f,
+              "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"symbol\", \"filter\": [\"all\", [\"within\", "
+              "{\"type\": \"Polygon\", \"coordinates\": []}], [\"within\", {}]], \"layout\": {\"text-field\": \"x\"}},"
+              "{\"id\": \"b\", \"type\": \"line\", \"paint\": {\"line-width\": [\"distance\", {}]}},"
+              "{\"id\": \"c\", \"type\": \"symbol\", \"layout\": {\"text-field\": [\"resolved-locale\", "
+              "[\"collator\", {}]]}}, {\"id\": \"d\", \"type\": \"line\", \"filter\": [\"==\", \"class\", "
+              "\"within\"]}]}"),
+        CAMBER_OK);
+    assert_int_equal(f.error_count, 0);
+    assert_int_equal(f.warning_count, 3);
+    assert_string_equal(f.warning,
+                        "roads.json: /layers/2/layout/text-field/0: \"resolved-locale\" is not supported, so the "
+                        "layer is left out");
+    assert_int_equal(f.style->layer_count, 1);
+    assert_string_equal(f.style->layers[0].id, "d");
+    teardown(&f);
+}
+
+/* Features whose label the zoom decides are read, whatever the zoom of the view that they are read for. */
+static void test_filter_by_zoom(void **state) {
+    (void)state;
+    const camber_feature_view point = {.geometry_type = "Point"};
+    fixture f;
+    setup(&f);
+    assert_int_equal(
+        parse(&f, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"symbol\", \"filter\": [\">=\", "
+                  "[\"zoom\"], 5], \"layout\": {\"text-field\": \"x\"}}, {\"id\": \"b\", \"type\": \"symbol\", "
+                  "\"filter\": [\"==\", [\"geometry-type\"], \"Polygon\"]}]}"),
+        CAMBER_OK);
+    assert_true(camber_style_layer_takes(f.style->layers, &point));
+    assert_false(camber_style_layer_matches(f.style->layers, 4.9, &point));
+    assert_true(camber_style_layer_matches(f.style->layers, 5.0, &point));
+    assert_false(camber_style_layer_takes(f.style->layers + 1, &point));
     teardown(&f);
 }
 
@@ -1221,13 +1263,13 @@ static void test_sets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),    cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),     cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes), cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_states),      cmocka_unit_test(test_reference),  cmocka_unit_test(test_wrong),
-        cmocka_unit_test(test_nesting),     cmocka_unit_test(test_many),       cmocka_unit_test(test_many_names),
-        cmocka_unit_test(test_damage),      cmocka_unit_test(test_memory),     cmocka_unit_test(test_long_pointers),
-        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),        cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),         cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes),     cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_left_out),    cmocka_unit_test(test_filter_by_zoom), cmocka_unit_test(test_states),
+        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),          cmocka_unit_test(test_nesting),
+        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),     cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),  cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -762,6 +762,34 @@ static void test_pictograph(void **state) {
     unmake(&m);
 }
 
+/* A script that no font has is told once, with the package that has it. */
+static void test_missing_scripts(void **state) {
+    (void)state;
+    static const char *const scripts[][3] = {
+        {"\xd8\xa7\xd9\x84", "Arabic", "fonts-noto-core"},
+        {"\xd7\xaa", "Hebrew", "fonts-noto-core"},
+        {"\xe0\xa4\xa6", "Devanagari", "fonts-noto-core"},
+        {"\xe0\xb8\x81", "Thai", "fonts-noto-core"},
+        {"\xe1\x9e\x97", "Khmer", "fonts-noto-core"},
+        {"\xe1\x80\x9b", "Myanmar", "fonts-noto-core"},
+        {"\xe5\x8c\x97\xe3\x82\xbf\xe3\x83\xbc\xe3\x81\x8c\xec\x84\x9c", "Chinese, Japanese and Korean",
+         "fonts-noto-cjk"},
+        {"\xf0\x9f\x98\x80", "pictograph", "fonts-symbola"},
+        {"\xf0\x90\x8e\xa0", "Xpeo", "fonts-noto-core"}, /* Old Persian */
+    };
+    maker m;
+    make_shipped(&m);
+    for (size_t i = 0; i < sizeof scripts / sizeof *scripts; i++)
+        for (int round = 0; round < 2; round++) {
+            camber_text *text = shape(&m, scripts[i][0], noto_sans, (camber_text_desc){0});
+            assert_int_equal(m.h.warnings, i + 1);
+            assert_non_null(strstr(m.h.warning, scripts[i][1]));
+            assert_non_null(strstr(m.h.warning, scripts[i][2]));
+            camber_text_destroy(text);
+        }
+    unmake(&m);
+}
+
 /* Marks that a letter's font does not have take the letter with them. */
 static void test_marks(void **state) {
     (void)state;
@@ -956,6 +984,7 @@ int main(void) {
         cmocka_unit_test(test_missing_font),
         cmocka_unit_test(test_folder),
         cmocka_unit_test(test_pictograph),
+        cmocka_unit_test(test_missing_scripts),
         cmocka_unit_test(test_marks),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_long),

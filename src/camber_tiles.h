@@ -268,13 +268,13 @@ typedef struct camber_tiles_stats {
     uint64_t background; /* tiles that were drawn, but left out because they show only the background */
     /* pictures that were drawn; once its tiles are written, a picture survives the end of the process */
     uint64_t units;
-    uint64_t resumed;  /* units that an earlier run had already drawn */
-    uint64_t emptied;  /* renew: tiles that the archive had and that are empty now */
-    uint64_t left_out; /* renew: tiles of the list that are outside the zooms and bounds */
+    uint64_t resumed;    /* units that an earlier run had already drawn */
+    uint64_t emptied;    /* renew: tiles that the archive had and that are empty now */
+    uint64_t left_out;   /* renew: tiles of the list that are outside the zooms and bounds */
     uint64_t relabelled; /* renew: tiles that were added to the list because their labels have changed */
-    uint64_t points;   /* points that were drawn, counted once per zoom and metatile */
-    uint64_t bytes;    /* bytes of the tiles; for a dry run, an estimate from sample pictures */
-    bool done;         /* resume, renew: there was nothing left to do */
+    uint64_t points;     /* points that were drawn, counted once per zoom and metatile */
+    uint64_t bytes;      /* bytes of the tiles; for a dry run, an estimate from sample pictures */
+    bool done;           /* resume, renew: there was nothing left to do */
     double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make_ms: for networks and passes */
     /* summed over all encoding threads: wall-clock time, and processor time */
     double encode_ms, encode_cpu_ms;

@@ -23,7 +23,7 @@ typedef struct layout_maker {
     size_t ring_capacity;
 } layout_maker;
 
-/* ---- What is seen ---- */
+/* ---- The seen part of the world ---- */
 
 /* Returns the box around the quadrangle that is seen. */
 static camber_box find_corners(const camber_view *view) {

@@ -1,8 +1,9 @@
 /* Records which labels are in each tile of an archive.
  *
  * Input: the labels of some zooms. Output: for each tile that labels touch, a hash of how they look; as a file, these
- * pairs of numbers behind a magic number, and a checksum. Main idea: new data may move labels far from what has changed,
- * and a label that has moved touches tiles whose lines are the same as before. Two records show which tiles these are. */
+ * pairs of numbers behind a magic number, and a checksum. Main idea: new data may move labels far from what has
+ * changed, and a label that has moved touches tiles whose lines are the same as before. Two records show which tiles
+ * these are. */
 #include "tiles/label_record.h"
 
 #include "archive/contents.h"

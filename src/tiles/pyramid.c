@@ -30,7 +30,7 @@ typedef struct pyramid {
     const camber_tiles_draw_desc *desc;
     camber_tiles_area area;
     camber_schedule schedule;
-    camber_archive *renewed; /* the archive whose tiles are replaced. NULL: none */
+    camber_archive *renewed;    /* the archive whose tiles are replaced. NULL: none */
     camber_label_record labels; /* of the archive, if they are recorded; otherwise context is NULL */
     camber_archive_writer *writer;
     camber_encode_queue *queue;
@@ -493,8 +493,9 @@ static camber_status check_desc(const pyramid *p) {
             p->context, CAMBER_ERROR_ARGUMENT,
             "tiles: renewing cannot be combined with shards, resuming, a dry run or a schedule; leave those out");
     if (desc->label_record && (desc->shards || desc->schedule))
-        return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
-                           "tiles: labels cannot be recorded by a part of a run; leave out the shards and the schedule");
+        return camber_fail(
+            p->context, CAMBER_ERROR_ARGUMENT,
+            "tiles: labels cannot be recorded by a part of a run; leave out the shards and the schedule");
     if (p->engine->desc.on_demand_side)
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the engine draws tiles on demand; make one without on_demand_side");

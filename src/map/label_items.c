@@ -2,6 +2,7 @@
  *
  * Input: candidates after placement. Output: for each glyph and icon, how it is drawn in the picture. */
 #include "map/label_layout.h"
+#include "text/clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,6 +32,8 @@ static int compare(const void *a, const void *b) {
         return c->rank < d->rank ? -1 : 1;
     if (c->x < d->x || c->x > d->x)
         return c->x < d->x ? -1 : 1;
+    if (c->y < d->y || c->y > d->y)
+        return c->y < d->y ? -1 : 1;
     return c < d ? -1 : c > d;
 }
 
@@ -213,7 +216,7 @@ static camber_status add_along(item_maker *m, const camber_label_candidate *c, u
     const bool down = m->track.vertical;
     const camber_text *text = down ? form->vertical : form->text;
     for (size_t i = 0, end; i < text->glyph_count && status == CAMBER_OK; i = end) {
-        const double middle = camber_label_cluster_middle(text, i, rule->symbol.letter_spacing_em, &end);
+        const double middle = camber_text_cluster_middle(text, i, &end);
         const camber_label_frame frame = frame_on(m, rule, middle * m->track.size + m->track.shift);
         for (size_t k = i; k < end && status == CAMBER_OK; k++) {
             const camber_text_glyph *g = text->glyphs + k;

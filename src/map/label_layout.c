@@ -25,6 +25,11 @@ typedef struct layout_maker {
 
 /* ---- The seen part of the world ---- */
 
+double camber_label_whole_zoom_px(const camber_view *view) {
+    const double zoom = camber_view_style_zoom(view);
+    return view->ratio * exp2(zoom - floor(zoom));
+}
+
 /* Returns the box around the quadrangle that is seen. */
 static camber_box find_corners(const camber_view *view) {
     double corners[8];
@@ -66,6 +71,17 @@ static bool is_in(const camber_box *box, double x, double y) {
     return x >= box->x0 && x <= box->x1 && y >= box->y0 && y <= box->y1;
 }
 
+/* Returns the turn in which an anchor of a line is tried, in the upper 6 bits: the first anchor before all others, then
+ * every other one of those that are left. If anchors are too close for all of their labels, those that are shown are
+ * evenly spaced, wherever the view begins. */
+static uint64_t turn_of(double number) {
+    uint64_t turn = 0;
+    if (number >= 1.0 && number < 4294967296.0)
+        for (turn = 32; fmod(number, 2.0) == 0.0; turn--)
+            number /= 2.0;
+    return turn << 58;
+}
+
 /* Returns the px of a point of the world in a domain: multiples of its step, whatever the copy of the world. */
 static void snap_to_domain(const camber_label_domain *domain, const double world[2], double px[2]) {
     const double turns = floor(world[0]);
@@ -89,8 +105,8 @@ static bool find_px(const layout_maker *m, const double world[2], double shift, 
 }
 
 /* Adds a candidate with the current class's form at a point of the world, if the point is near enough to what is seen.
- * shift: of the copy of the world. on_line: has the line and the segment that the candidate is on. NULL: it is on no
- * line. */
+ * shift: of the copy of the world. on_line: has the line and the segment that the candidate is on, and its turn.
+ * NULL: it is on no line. */
 static camber_status add_candidate(layout_maker *m, const camber_label_thing *t, const double world[2], double shift,
                                    const camber_label_candidate *on_line) {
     camber_label_layout *l = m->layout;
@@ -105,6 +121,8 @@ static camber_status add_candidate(layout_maker *m, const camber_label_thing *t,
     made.x = px[0];
     made.y = px[1];
     made.rank = camber_mix(camber_mix_point(0, world), l->forms[m->form].hash);
+    if (on_line)
+        made.rank = on_line->rank | made.rank >> 6;
     if (!camber_grow(l->context, &l->candidates, &l->candidate_capacity, l->candidate_count + 1, sizeof *l->candidates))
         return CAMBER_ERROR_MEMORY;
     l->candidates[l->candidate_count++] = made;
@@ -244,9 +262,11 @@ static camber_status add_on_line(layout_maker *m, const camber_label_thing *t, d
     const double scale = m->layout->view->scale_px;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < m->anchors.count && status == CAMBER_OK; i++) {
-        camber_label_candidate on_line = {.line = line, .segment = (uint32_t)m->anchors.items[i].segment};
+        const camber_path_anchor *anchor = m->anchors.items + i;
+        camber_label_candidate on_line = {
+            .line = line, .segment = (uint32_t)anchor->segment, .rank = turn_of(anchor->number)};
         double point[2];
-        camber_path_point(&m->path, m->anchors.items + i, point);
+        camber_path_point(&m->path, anchor, point);
         const double place[2] = {m->origin[0] + point[0] / scale, m->origin[1] + point[1] / scale};
         find_line_start(m, place, &on_line);
         status = add_candidate(m, t, place, shift, &on_line);
@@ -281,22 +301,24 @@ static camber_status anchor_line(layout_maker *m, const camber_label_thing *t, s
     return status;
 }
 
+/* As in MapLibre, labels are where they were at the last whole zoom, so that they do not move along their lines while a
+ * map zooms. */
 static camber_status anchor_lines(layout_maker *m, const camber_label_thing *t) {
     const camber_label_layout *l = m->layout;
     const camber_label_form *form = l->forms + m->form;
     const camber_label_rule *rule = l->rules + form->rule;
     const camber_text *text = form->vertical ? form->vertical : form->text;
-    const double ratio = l->view->ratio;
+    const double px = camber_label_whole_zoom_px(l->view), em = rule->symbol.anchor_text_px * px;
     double length = 0.0;
     if (text)
-        length = (double)(text->vertical ? text->bottom - text->top : text->right - text->left) * rule->text_px;
+        length = (double)(text->vertical ? text->bottom - text->top : text->right - text->left) * em;
     /* In MapLibre the px of an icon count as if they were units of text, of which an em has 24. */
     if (form->icon)
-        length = fmax(length, form->icon->width / form->icon->pixel_ratio * rule->text_px / 24.0);
-    const camber_anchor_rule anchors = {.spacing = fmax(rule->symbol.spacing_px * ratio, 1.0),
+        length = fmax(length, form->icon->width / form->icon->pixel_ratio * em / 24.0);
+    const camber_anchor_rule anchors = {.spacing = fmax(rule->symbol.spacing_px * px, 1.0),
                                         .label_length = length,
-                                        .em = rule->text_px,
-                                        .window = text ? 0.6 * rule->text_px : 0.0,
+                                        .em = em,
+                                        .window = text ? 0.6 * em : 0.0,
                                         .max_angle = rule->symbol.max_angle_deg * (3.14159265358979323846 / 180.0)};
     camber_status status = CAMBER_OK;
     for (size_t p = t->first_polyline; p < t->end_polyline && status == CAMBER_OK; p++)

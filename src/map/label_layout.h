@@ -86,7 +86,7 @@ typedef struct camber_label_candidate {
     uint32_t line, segment; /* CAMBER_NO_PATH, or the line and the segment that it is on */
     double x, y;            /* of the anchor, px of the plane */
     double line_x, line_y;  /* of the line's first point, relative to the anchor */
-    uint64_t rank;          /* decides between equal candidates: a hash of its position and words */
+    uint64_t rank; /* decides between equal candidates: its turn on its line, then a hash of its position and words */
     /* Placement fills these in. */
     bool shows_text, shows_icon, vertical;
     bool unsettled; /* in a domain: what is shown may depend on labels outside it */
@@ -131,6 +131,8 @@ typedef struct camber_label_layout {
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
+/* Returns how many device px a CSS px of the last whole zoom has in the view: from 1 to less than 2 times the ratio. */
+double camber_label_whole_zoom_px(const camber_view *view);
 /* Finds the candidates of a view or of a domain. The caller has set the members from context to sprites. Returns
  * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);
@@ -213,9 +215,6 @@ camber_status camber_label_track_find(const camber_label_layout *layout, const c
                                       camber_label_track *track, bool *fits);
 /* Returns the point at a distance. */
 camber_track_point camber_label_track_point(const camber_label_track *track, double distance);
-/* Returns the distance of the middle of the cluster that begins with glyph first, in em; the cluster is turned about
- * it. *end is the cluster's end. */
-double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end);
 
 /* ---- Placement and items ---- */
 

@@ -1,8 +1,8 @@
 /* Decides which labels are shown.
  *
  * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
- * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
- * Each label in turn takes up its shapes in the picture, unless earlier labels are in the way.
+ * the order is by sort key, by rank, by turn on a line, then by a hash of place and words, so that the order of the
+ * input does not matter. Each label in turn takes up its shapes in the picture, unless earlier labels are in the way.
  *
  * In a domain, labels outside it are not known, and may be in the way of those near its edges. So a label is unsettled
  * if a label outside might meet it, or if it meets what an earlier unsettled label may show. All others are settled: a
@@ -476,7 +476,8 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     const camber_label_rule *rule = p->layout->rules + form->rule;
     const camber_symbol *s = &rule->symbol;
     const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text;
-    const double near = repeats ? fmax(0.5 * s->spacing_px * p->layout->view->ratio, 0.0) : 0.0;
+    const double spacing = s->spacing_px * camber_label_whole_zoom_px(p->layout->view);
+    const double near = repeats ? fmax(0.5 * spacing, 0.0) : 0.0;
     tried text, icon;
     c->box = CAMBER_BOX_EMPTY;
     p->shape_count = 0;

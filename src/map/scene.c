@@ -168,7 +168,7 @@ static camber_status make_labels(camber_scene *scene, const camber_window_labels
     else
         status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
     scene->label_count = labels.label_count;
     camber_labels_free(&labels);
     return status;
@@ -410,8 +410,8 @@ static void move_fills(camber_scene *scene) {
 static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
     camber_mesh *meshes[] = {mesh, NULL, NULL};
     for (size_t i = 0; i < list->count; i++) {
-        for (size_t k = 1; k <= list->meshes[i] && !meshes[k]; k++)
-            if (camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
+        for (size_t k = 1; k <= list->meshes[i] && meshes[k - 1]; k++)
+            if (!meshes[k] && camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
                 meshes[k] = NULL;
         list->passes[i].mesh = meshes[list->meshes[i]];
         list->passes[i].kind = list->passes[i].mesh || !list->meshes[i] ? list->passes[i].kind : CAMBER_PASS_FILL;

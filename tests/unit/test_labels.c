@@ -332,6 +332,33 @@ static void test_line_does_not_depend_on_view(void **state) {
     close_town(t);
 }
 
+/* Between two whole zooms the labels of a line stay where they are on the map, whatever the size of the text. */
+static void test_line_does_not_depend_on_zoom(void **state) {
+    (void)state;
+    const double px[] = {50.0, 500.0, 1000.0, 500.0};
+    town *t =
+        open_town(NAMES("names", ALONG ",\"symbol-spacing\":200,\"text-size\":[\"interpolate\",[\"linear\"],[\"zoom\"],"
+                                       "1,10,2,16]"));
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "Road", px, 2);
+    camber_labels whole = place(t);
+    assert_int_equal(whole.label_count, 5);
+    see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.5, .width = 1440, .height = 1440});
+    camber_labels between = place(t);
+    assert_int_equal(between.label_count, 5);
+    for (size_t i = 0; i < 5; i++) {
+        const camber_box *a = &whole.labels[i].box;
+        double nearest = INFINITY;
+        for (size_t k = 0; k < 5; k++) {
+            const camber_box *b = &between.labels[k].box;
+            nearest = fmin(nearest, fabs((0.5 * (b->x0 + b->x1) - 720.0) / sqrt(2.0) - 0.5 * (a->x0 + a->x1) + 512.0));
+        }
+        assert_near(nearest, 0.0, 0.1);
+    }
+    camber_labels_free(&whole);
+    camber_labels_free(&between);
+    close_town(t);
+}
+
 /* ---- Icons ---- */
 
 static void test_icon(void **state) {
@@ -348,6 +375,26 @@ static void test_icon(void **state) {
     assert_near((double)item->x, 300.0 + 2.0 - 10.0, 1e-4);
     assert_near((double)item->y, 200.0 - 6.0 - 40.0, 1e-4);
     camber_labels_free(&labels);
+    close_town(t);
+}
+
+/* Icons that are too close to each other are left out evenly, wherever the view begins. */
+static void test_icons_along(void **state) {
+    (void)state;
+    const double px[] = {10.0, 500.0, 1014.0, 500.0};
+    town *t = open_town(ICONS("icons", "\"symbol-placement\":\"line\",\"symbol-spacing\":9"));
+    double origin = NAN;
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "", px, 2);
+    for (uint32_t width = 500; width <= 900; width += 90) {
+        see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.0, .width = width, .height = 512});
+        camber_labels labels = place(t);
+        assert_near((double)labels.item_count, width / 18.0, 1.5);
+        if (isnan(origin))
+            origin = (double)labels.items[0].x - 0.5 * width;
+        for (size_t i = 0; i < labels.item_count; i++)
+            assert_near(remainder((double)labels.items[i].x - 0.5 * width - origin, 18.0), 0.0, 0.01);
+        camber_labels_free(&labels);
+    }
     close_town(t);
 }
 
@@ -554,7 +601,9 @@ int main(void) {
         cmocka_unit_test(test_max_angle),
         cmocka_unit_test(test_line_spacing),
         cmocka_unit_test(test_line_does_not_depend_on_view),
+        cmocka_unit_test(test_line_does_not_depend_on_zoom),
         cmocka_unit_test(test_icon),
+        cmocka_unit_test(test_icons_along),
         cmocka_unit_test(test_text_fit),
         cmocka_unit_test(test_optional),
         cmocka_unit_test(test_pitch),

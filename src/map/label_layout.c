@@ -29,7 +29,7 @@ typedef struct layout_maker {
     size_t ring_capacity;
 } layout_maker;
 
-/* ---- What is seen ---- */
+/* ---- The seen part of the world ---- */
 
 double camber_label_whole_zoom_px(const camber_view *view) {
     const double zoom = camber_view_style_zoom(view);

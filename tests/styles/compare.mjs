@@ -141,8 +141,8 @@ async function check(page, name, view, own, work) {
     const [most, reason] = EXCEPTIONS[`${name} ${view.zoom}`] ?? [MEAN], [whole, lines, ordered] = differences;
     // A picture that has come to agree must go from the exceptions.
     const right = whole < most && (!reason || whole >= MEAN);
-    console.log(`${name}, zoom ${view.zoom}: mean difference ${whole.toFixed(2)}, without labels ${lines.toFixed(2)}, ` +
-        `in camber's order ${ordered.toFixed(2)}${right ? '' : `: wrong, the limit is ${most}`}` +
+    console.log(`${name}, zoom ${view.zoom}: mean difference ${whole.toFixed(2)}, without labels ${lines.toFixed(2)},` +
+        ` in camber's order ${ordered.toFixed(2)}${right ? '' : `: wrong, the limit is ${most}`}` +
         `${reason ? ` (${reason})` : ''}`);
     return right;
 }

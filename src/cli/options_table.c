@@ -36,7 +36,7 @@ enum {
 #endif
     SEEN = MAPS & ~PYRAMIDS, /* have a single view of a map */
     STYLED = MAPS & ~COMPARE,
-    LABELLED = MAPS & RENDER,
+    LABELLED = MAPS & (RENDER | PYRAMIDS),
     SIGNED = MAPS & (RENDER | TESSELLATE | PYRAMIDS),
 };
 

@@ -153,15 +153,22 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
     return status;
 }
 
-/* Places the labels of the view and makes their shapes, if fonts were read with the features. */
-static camber_status make_labels(camber_scene *scene) {
+/* Places the labels of the view, or takes those of the zoom, and makes their shapes, if fonts were read with the
+ * features. placed NULL: the labels are those of the view. */
+static camber_status make_labels(camber_scene *scene, const camber_window_labels *placed) {
     const camber_features *features = scene->zoom->features;
     camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
-    camber_status status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+    camber_status status;
+    if (placed)
+        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW && camber_view_has_zoom_labels(features->style, &scene->view))
+        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &labels);
+    else
+        status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
     scene->label_count = labels.label_count;
     camber_labels_free(&labels);
     return status;
@@ -177,7 +184,7 @@ static camber_status make_view_scene(camber_scene *scene, const camber_features 
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
-    status = make_labels(scene); /* first, because making the network may free the features' points */
+    status = make_labels(scene, NULL); /* first, because making the network may free the features' points */
     if (status != CAMBER_OK)
         return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
@@ -279,7 +286,8 @@ camber_status camber_scene_create_last(camber_features *features, const camber_s
     return create(features, &once, features, scene);
 }
 
-camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
+camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window,
+                                         const camber_window_labels *labels, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene) {
     camber_plan_entries listed = {0};
     camber_scene *made = camber_alloc_zero(zoom->context, 1, sizeof *made);
@@ -290,6 +298,8 @@ camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_vi
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, window, CAMBER_NETWORK_WINDOW, &listed, &made->geometry);
     camber_plan_entries_free(&listed);
+    if (status == CAMBER_OK && labels && labels->labels)
+        status = make_labels(made, labels);
     if (status == CAMBER_OK)
         status = make_pair_passes(made);
     if (status == CAMBER_OK)

@@ -90,6 +90,8 @@ void camber_engine_forget_zoom(camber_tiles_engine *engine, int zoom) {
     if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM)
         return;
     camber_census_free(&engine->zooms[zoom].census);
+    camber_zoom_labels_destroy(engine->zooms[zoom].labels);
+    engine->zooms[zoom].labels = NULL;
     if (engine->zooms[zoom].mesh)
         camber_mesh_plan_destroy(engine->zooms[zoom].mesh);
     else
@@ -104,6 +106,7 @@ void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
     camber_mesh_destroy(engine->mesh);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
         camber_engine_forget_zoom(engine, zoom);
+    camber_label_things_free(&engine->things);
     camber_workers_free(&engine->workers);
     camber_free(engine->context, engine);
 }
@@ -246,9 +249,14 @@ static camber_status tessellate(camber_tiles_engine *engine, const camber_metati
     const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
     const camber_view window = window_of(zoom->plan, picture);
     const double start_ms = camber_now_ms();
-    const camber_status status =
-        camber_scene_create_window(zoom->plan, &window, metatile ? zoom->census.polylines + metatile->first : none,
-                                   metatile ? metatile->end - metatile->first : 0, scene);
+    camber_window_labels labels = {
+        .square =
+            camber_engine_square(engine, picture->zoom, picture->column / picture->side, picture->row / picture->side)};
+    camber_status status = camber_engine_get_labels(engine, picture->zoom, &labels.labels);
+    if (status == CAMBER_OK)
+        status = camber_scene_create_window(zoom->plan, &window, &labels,
+                                            metatile ? zoom->census.polylines + metatile->first : none,
+                                            metatile ? metatile->end - metatile->first : 0, scene);
     engine->make_ms += camber_now_ms() - start_ms;
     return status == CAMBER_OK ? camber_scene_tessellate(*scene, engine->mesh, CAMBER_METHOD_STRIP) : status;
 }
@@ -309,7 +317,12 @@ static camber_status find(camber_tiles_engine *engine, int zoom, uint32_t column
         return status;
     const uint32_t side = camber_engine_side(engine, zoom);
     *metatile = find_metatile(engine, zoom, column, row);
+    uint64_t labelled = 0;
+    const camber_status found = camber_engine_find_label_tiles(engine, zoom, column / side, row / side, &labelled);
+    if (found != CAMBER_OK)
+        return found;
     *picture = camber_engine_describe(engine, zoom, column / side, row / side, *metatile);
+    picture->tiles |= labelled;
     return CAMBER_OK;
 }
 

@@ -1,167 +1,7 @@
 /* Labels of a view: which are shown, and where their glyphs and icons are. */
+#include "town.h"
+
 #include "map/collision.h"
-#include "map/label_layout.h"
-#include "style/style.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-/* ---- Features by hand, with a name and a kind ---- */
-
-enum { MOST = 20000, CLASSES = 2048, VALUES = 4 * CLASSES, WORLD = 1024 };
-
-typedef struct town {
-    camber_context *context;
-    camber_style *style;
-    camber_fonts *fonts;
-    camber_features features;
-    camber_view view;
-    camber_sprites sprites;
-    camber_sprite_image images[2];
-    double points[2 * MOST];
-    size_t offsets[MOST];
-    uint32_t polyline_feature[MOST], feature_counts[MOST], feature_class[MOST];
-    camber_feature_class classes[CLASSES];
-    camber_value values[VALUES];
-    char names[CLASSES][16];
-    char *layer_name;
-    char layer_text[8];
-    char last[512];
-    int errors;
-} town;
-
-static void take_log(void *user, camber_log_level level, const char *message) {
-    town *t = user;
-    t->errors += level == CAMBER_LOG_ERROR;
-    snprintf(t->last, sizeof t->last, "%s", message);
-}
-
-/* A symbol layer that shows names in the font that camber ships. */
-#define NAMES(id, layout)                                                                                              \
-    "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"text-field\":[\"get\",\"name\"]," layout "}}"
-/* An icon for what has no name. */
-#define ICONS(id, layout) "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"icon-image\":\"box\"," layout "}}"
-
-static town *open_town(const char *layers) {
-    town *t = calloc(1, sizeof *t);
-    assert_non_null(t);
-    assert_int_equal(
-        camber_context_create(&(camber_context_desc){.log = take_log, .log_user = t, .cache_dir = ""}, &t->context),
-        CAMBER_OK);
-    char json[8192];
-    const int length = snprintf(json, sizeof json, "{\"version\":8,\"sources\":{},\"layers\":[%s]}", layers);
-    if (camber_style_parse(t->context, json, (size_t)length, "test", &t->style) != CAMBER_OK)
-        fail_msg("%s", t->last);
-    assert_int_equal(camber_fonts_create(t->context, &(camber_fonts_desc){.no_system = true}, &t->fonts), CAMBER_OK);
-    strcpy(t->layer_text, "all");
-    t->layer_name = t->layer_text;
-    t->features = (camber_features){.context = t->context,
-                                    .style = t->style,
-                                    .schema = &t->style->schema,
-                                    .points = t->points,
-                                    .offsets = t->offsets,
-                                    .polyline_feature = t->polyline_feature,
-                                    .feature_counts = t->feature_counts,
-                                    .feature_class = t->feature_class,
-                                    .classes = t->classes,
-                                    .values = t->values,
-                                    .layer_names = &t->layer_name,
-                                    .layer_count = 1};
-    /* Two images: a box of 10 x 20 px, and a frame of 30 x 30 that stretches between 10 and 20. */
-    static float stretch[1][2] = {{10.0f, 20.0f}};
-    t->images[0] = (camber_sprite_image){.name = (char *)"box", .width = 10, .height = 20, .pixel_ratio = 1.0};
-    t->images[1] = (camber_sprite_image){.name = (char *)"frame",
-                                         .width = 30,
-                                         .height = 30,
-                                         .pixel_ratio = 1.0,
-                                         .stretch_x = stretch,
-                                         .stretch_y = stretch,
-                                         .stretch_x_count = 1,
-                                         .stretch_y_count = 1};
-    t->sprites = (camber_sprites){.context = t->context, .images = t->images, .image_count = 2};
-    const camber_view_desc view = {.kind = CAMBER_VIEW_CENTER, .zoom = 1.0};
-    assert_int_equal(camber_view_create(t->context, &view, &t->view), CAMBER_OK);
-    return t;
-}
-
-static void close_town(town *t) {
-    for (size_t i = 0; i < t->sprites.missing_count; i++)
-        camber_free(t->context, t->sprites.missing[i]);
-    camber_free(t->context, t->sprites.missing);
-    camber_fonts_destroy(t->fonts);
-    camber_style_destroy(t->style);
-    camber_context_destroy(t->context);
-    free(t);
-}
-
-static uint32_t add_class(town *t, camber_geometry_kind kind, const char *name) {
-    const size_t width = t->style->schema.property_count, c = t->features.class_count++;
-    assert_true(c < CLASSES && (c + 1) * width <= VALUES);
-    snprintf(t->names[c], sizeof t->names[c], "%s", name);
-    t->classes[c] = (camber_feature_class){
-        .source = CAMBER_NO_SOURCE, .geometry = kind, .first_value = c * width, .labelled = true};
-    for (size_t i = 0; i < width; i++)
-        if (strcmp(t->style->schema.properties[i], "name") == 0)
-            t->values[c * width + i] = (camber_value){.type = CAMBER_VALUE_STRING, .string = t->names[c]};
-    return (uint32_t)c;
-}
-
-/* Adds a polyline in px of the picture at zoom 1, where the world is WORLD px wide; new: to a feature of its own. */
-static void add_polyline(town *t, uint32_t class, bool new, const double *px, size_t count) {
-    camber_features *f = &t->features;
-    assert_true(f->point_count + count <= MOST && f->polyline_count + 1 < MOST);
-    for (size_t i = 0; i < 2 * count; i++)
-        t->points[2 * f->point_count + i] = px[i] / WORLD;
-    f->point_count += count;
-    t->offsets[f->polyline_count + 1] = f->point_count;
-    if (new)
-        t->feature_class[f->feature_count++] = class;
-    t->feature_counts[f->polyline_count] = new;
-    t->polyline_feature[f->polyline_count++] = (uint32_t)f->feature_count - 1;
-}
-
-static void add_feature(town *t, camber_geometry_kind kind, const char *name, const double *px, size_t count) {
-    add_polyline(t, add_class(t, kind, name), true, px, count);
-}
-
-static void add_point(town *t, const char *name, double x, double y) {
-    add_feature(t, CAMBER_GEOMETRY_LABEL_POINT, name, (const double[]){x, y}, 1);
-}
-
-static camber_labels place(town *t) {
-    camber_labels labels;
-    if (camber_labels_place(&t->features, &t->view, t->fonts, &t->sprites, &labels) != CAMBER_OK)
-        fail_msg("%s", t->last);
-    return labels;
-}
-
-static void see(town *t, camber_view_desc view) {
-    assert_int_equal(camber_view_create(t->context, &view, &t->view), CAMBER_OK);
-}
-
-static void assert_near(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.9g is not %.9g within %g", a, b, tolerance);
-}
-
-static void expect_count(town *t, size_t count) {
-    camber_labels labels = place(t);
-    assert_int_equal(labels.label_count, count);
-    camber_labels_free(&labels);
-}
-
-/* A small generator of numbers from 0 to 1. */
-static double next_share(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
-    return (*state >> 8) / 16777216.0;
-}
 
 /* ---- The grid ---- */
 
@@ -169,8 +9,8 @@ static camber_obstacle random_shape(uint32_t *state) {
     const double x = next_share(state) * 500.0 - 50.0, y = next_share(state) * 300.0 - 50.0;
     const double w = next_share(state) * 60.0, h = next_share(state) * 20.0;
     if (next_share(state) < 0.5)
-        return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + h), 0.0f};
-    return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + w), (float)(0.5 * w)};
+        return (camber_obstacle){x, y, x + w, y + h, 0.0};
+    return (camber_obstacle){x, y, x + w, y + w, 0.5 * w};
 }
 
 static void test_collision(void **state) {
@@ -560,6 +400,26 @@ static void test_icon_on_whole_px(void **state) {
     }
 }
 
+/* Icons that are too close to each other are left out evenly, wherever the view begins. */
+static void test_icons_along(void **state) {
+    (void)state;
+    const double px[] = {10.0, 500.0, 1014.0, 500.0};
+    town *t = open_town(ICONS("icons", "\"symbol-placement\":\"line\",\"symbol-spacing\":9"));
+    double origin = NAN;
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "", px, 2);
+    for (uint32_t width = 500; width <= 900; width += 90) {
+        see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.0, .width = width, .height = 512});
+        camber_labels labels = place(t);
+        assert_near((double)labels.item_count, width / 18.0, 1.5);
+        if (isnan(origin))
+            origin = (double)labels.items[0].x - 0.5 * width;
+        for (size_t i = 0; i < labels.item_count; i++)
+            assert_near(remainder((double)labels.items[i].x - 0.5 * width - origin, 18.0), 0.0, 0.01);
+        camber_labels_free(&labels);
+    }
+    close_town(t);
+}
+
 static void test_text_fit(void **state) {
     (void)state;
     town *t = open_town(NAMES("shields", "\"icon-image\":\"frame\",\"icon-text-fit\":\"both\",\"text-size\":20,"
@@ -766,6 +626,7 @@ int main(void) {
         cmocka_unit_test(test_line_does_not_depend_on_zoom),
         cmocka_unit_test(test_icon),
         cmocka_unit_test(test_icon_on_whole_px),
+        cmocka_unit_test(test_icons_along),
         cmocka_unit_test(test_text_fit),
         cmocka_unit_test(test_optional),
         cmocka_unit_test(test_pitch),

@@ -104,6 +104,18 @@ static void set_matrix(const item_maker *m, const camber_label_candidate *c, cam
     item->yy = (float)((turned ? -f->yx : f->yy) * size[1] * scale);
 }
 
+/* Puts an image whose px are as large as the picture's onto whole px, so that it is as sharp as it was made. Browsers
+ * draw such images from the nearest px, with the same result. */
+static void snap_image(const camber_label_layout *layout, camber_label_item *item) {
+    const camber_sprite_image *icon = item->icon;
+    const float across = item->xx - (float)icon->width, down = item->yy - (float)icon->height;
+    if (icon->sdf || layout->lens.pitched || !(fmaxf(fabsf(across), fabsf(down)) < 1.0f / 64.0f) ||
+        !(fmaxf(fabsf(item->xy), fabsf(item->yx)) < 1.0f / 64.0f))
+        return;
+    item->x = floorf(item->x + 0.5f);
+    item->y = floorf(item->y + 0.5f);
+}
+
 static camber_status add_icon(item_maker *m, const camber_label_candidate *c, uint32_t label) {
     const camber_label_layout *l = m->layout;
     const camber_label_form *form = l->forms + c->form;
@@ -113,6 +125,7 @@ static camber_status add_icon(item_maker *m, const camber_label_candidate *c, ui
     const double at[2] = {box.x0, box.y0}, size[2] = {box.x1 - box.x0, box.y1 - box.y0};
     camber_label_item item = {.glyph = CAMBER_NO_GLYPH, .icon = form->icon, .look = rule->icon_look, .label = label};
     set_matrix(m, c, &item, &frame, at, size, false);
+    snap_image(l, &item);
     if (rule->symbol.text_fit != CAMBER_FIT_NONE && form->text)
         item.unstretched_px = (float)(l->view->ratio * (l->window ? l->window->scale : 1.0) / form->icon->pixel_ratio *
                                       hypot(frame.xx, frame.yx));

@@ -378,6 +378,28 @@ static void test_icon(void **state) {
     close_town(t);
 }
 
+/* An image that keeps its size is drawn on whole px; others are drawn where they are. */
+static void test_icon_on_whole_px(void **state) {
+    (void)state;
+    static const struct {
+        const char *layout;
+        double x, y;
+    } samples[] = {
+        {"\"icon-size\":1", 295.0, 191.0}, {"\"icon-size\":1.5", 292.8, 185.6}, {"\"icon-rotate\":90", 310.3, 195.6}};
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        char layer[256];
+        snprintf(layer, sizeof layer, ICONS("icons", "%s"), samples[i].layout);
+        town *t = open_town(layer);
+        add_point(t, "", 300.3, 200.6);
+        camber_labels labels = place(t);
+        assert_int_equal(labels.layers[0].icon_count, 1);
+        assert_near((double)labels.items[0].x, samples[i].x, 1e-3);
+        assert_near((double)labels.items[0].y, samples[i].y, 1e-3);
+        camber_labels_free(&labels);
+        close_town(t);
+    }
+}
+
 /* Icons that are too close to each other are left out evenly, wherever the view begins. */
 static void test_icons_along(void **state) {
     (void)state;
@@ -704,6 +726,7 @@ int main(void) {
         cmocka_unit_test(test_line_does_not_depend_on_view),
         cmocka_unit_test(test_line_does_not_depend_on_zoom),
         cmocka_unit_test(test_icon),
+        cmocka_unit_test(test_icon_on_whole_px),
         cmocka_unit_test(test_icons_along),
         cmocka_unit_test(test_text_fit),
         cmocka_unit_test(test_optional),

@@ -329,7 +329,9 @@ typedef struct camber_device camber_device;
  * Returns CAMBER_ERROR_DEVICE (no platform, no matching device, or fewer matching devices than number),
  * CAMBER_ERROR_ARGUMENT (an invalid work-group size or number of lanes, a largest buffer below 4096 bytes, a memory
  * limit below 65536), CAMBER_ERROR_MEMORY.
- * No kernel is built here: the kernels of a method are built, or loaded from the cache, when it is first used. */
+ * No kernel is built here: the kernels of a method are built, or loaded from the cache, when it is first used. Kernels
+ * of a device with fixed_kernels are part of the library. Its calls run kernels on the caller's thread, too, which
+ * needs 256 KB of stack. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);

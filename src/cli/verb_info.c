@@ -130,7 +130,7 @@ static void print_text(const json_t *object) {
     if (i == 0)
         printf("device    none: %s\n", json_object_get(object, "devices_error")
                                            ? text_of(object, "devices_error")
-                                           : "no OpenCL device here; install pocl-opencl-icd or a GPU's driver");
+                                           : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
     json_array_foreach(json_object_get(object, "backends"), i, entry) {
         if (json_is_true(json_object_get(entry, "available")))
             printf("GL        %s: %s, %s, targets up to %lld px\n", text_of(entry, "name"),

@@ -139,7 +139,7 @@ const camber_option_spec camber_option_specs[] = {
                 "drop points that move the line by at most T device pixels (0.1; with --polylines 0); 0 keeps all"},
                {READING, "drop points that move the line by at most T device pixels (0, which keeps all)"}}},
     {"device", 0, CAMBER_OPTION_DEVICE, EVERY | PYRAMIDS, FIELD(device), "TEXT",
-     "OpenCL device: cpu, gpu, or part of a device's name"},
+     "device: cpu, gpu, opencl, or part of a device's name"},
     {"backend", 0, CAMBER_OPTION_CHOICE, EVERY | PYRAMIDS, FIELD(backend), "auto|egl|osmesa",
      "library that provides GL (auto)"},
     {"sharing", 0, CAMBER_OPTION_CHOICE, RENDER | COMPARE | BENCH | INFO | PYRAMIDS, FIELD(sharing),

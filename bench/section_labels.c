@@ -58,15 +58,15 @@ static const city cities[] = {
     {"nyc", "New York", "nyc.osm.pbf", -73.9905, 40.7195, false},
 };
 
-/* A host whose memory is counted. */
-typedef struct host {
+/* The memory of a context, in bytes. */
+typedef struct counted_memory {
     size_t held, most;
-} host;
+} counted_memory;
 
 /* The size of a block is stored before it. */
 static void *reallocate(void *user, void *block, size_t size_bytes) {
     enum { HEAD = 16 };
-    host *h = user;
+    counted_memory *h = user;
     char *old = block ? (char *)block - HEAD : NULL;
     size_t old_size = 0;
     if (old)
@@ -85,12 +85,12 @@ static void *reallocate(void *user, void *block, size_t size_bytes) {
     return made + HEAD;
 }
 
-typedef struct map {
+typedef struct labelled_map {
     camber_style *style;
     camber_features *features;
-} map;
+} labelled_map;
 
-static camber_status open_map(const bench *b, camber_context *context, const city *c, map *m) {
+static camber_status open_map(const bench *b, camber_context *context, const city *c, labelled_map *m) {
     char path[1024];
     const camber_fonts_desc fonts = {.no_system = true}; /* the same on every machine */
     snprintf(path, sizeof path, "%s%s%s", c->own ? "" : b->data, c->own ? "" : "/data/", c->file);
@@ -104,7 +104,7 @@ static camber_status open_map(const bench *b, camber_context *context, const cit
     return status;
 }
 
-static void close_map(map *m) {
+static void close_map(labelled_map *m) {
     camber_features_destroy(m->features);
     camber_style_destroy(m->style);
 }
@@ -113,11 +113,11 @@ static void close_map(map *m) {
 
 enum { PICTURE_WIDTH = 500, PICTURE_HEIGHT = 200, MOVES = 8 };
 
-typedef struct picture {
+typedef struct moving_picture {
     bench *b;
     camber_scene *scene;
     clock_series frame, scenes, tessellate, draw;
-} picture;
+} moving_picture;
 
 static camber_view_desc view_of(const city *c, size_t move) {
     return (camber_view_desc){.kind = CAMBER_VIEW_CENTER,
@@ -137,7 +137,7 @@ static bool ignore_rows(void *user, const uint8_t *rgba, uint32_t first_row, uin
 }
 
 /* Draws pictures of a map that moves; times are of one of them. */
-static camber_status draw_pictures(picture *p, const city *c, bool counts) {
+static camber_status draw_pictures(moving_picture *p, const city *c, bool counts) {
     camber_status status = CAMBER_OK;
     clock_series parts[3] = {0};
     const clocks begin = read_clocks();
@@ -168,8 +168,8 @@ static camber_status draw_pictures(picture *p, const city *c, bool counts) {
 }
 
 static camber_status measure_picture(bench *b, const city *c, json_t *result) {
-    map m = {0};
-    picture p = {.b = b};
+    labelled_map m = {0};
+    moving_picture p = {.b = b};
     camber_scene_desc desc = {.view = view_of(c, 0), .simplify_px = BENCH_SIMPLIFY_PX};
     camber_status status = open_map(b, b->context, c, &m);
     if (status == CAMBER_OK)
@@ -204,8 +204,8 @@ static void size_view(const double bounds[4], camber_view_desc *desc) {
 }
 
 static camber_status measure_placement(bench *b, const city *c, json_t *result) {
-    host h = {0};
-    map m = {0};
+    counted_memory h = {0};
+    labelled_map m = {0};
     camber_context *context = NULL;
     const camber_context_desc desc = {.reallocate = reallocate, .allocator_user = &h};
     double bounds[4];

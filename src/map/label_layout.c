@@ -10,7 +10,7 @@
 /* How far outside the picture an anchor may be if its label reaches into the picture, CSS px. */
 static const double REACH_PX = 320.0;
 
-/* What is known of a class after all layers were evaluated: whether one of them shows it. */
+/* Whether any layer shows a class. It is known after all layers were evaluated. */
 enum { CLASS_UNKNOWN = 0, CLASS_IS_SILENT, CLASS_SPEAKS };
 
 typedef struct layout_maker {

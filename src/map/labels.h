@@ -64,8 +64,8 @@ camber_status camber_labels_place(const camber_features *features, const camber_
                                   camber_sprites *sprites, camber_labels *labels);
 void camber_labels_free(camber_labels *labels);
 
-/* What the labels of a set of features have in common in all views: what can be labelled, and, as long as only the
- * place of the view changes, texts and icons. */
+/* A book keeps from view to view what all views of a set of features share: the things that can be labelled, and, as
+ * long as only the place of the view changes, texts and icons. */
 typedef struct camber_label_book camber_label_book;
 
 /* Returns CAMBER_ERROR_MEMORY. */

@@ -104,6 +104,18 @@ static void set_matrix(const item_maker *m, const camber_label_candidate *c, cam
     item->yy = (float)((turned ? -f->yx : f->yy) * size[1] * scale);
 }
 
+/* Puts an image whose px are as large as the picture's onto whole px, so that it is as sharp as it was made. Browsers
+ * draw such images from the nearest px, with the same result. */
+static void snap_image(const camber_label_layout *layout, camber_label_item *item) {
+    const camber_sprite_image *icon = item->icon;
+    const float across = item->xx - (float)icon->width, down = item->yy - (float)icon->height;
+    if (icon->sdf || layout->lens.pitched || !(fmaxf(fabsf(across), fabsf(down)) < 1.0f / 64.0f) ||
+        !(fmaxf(fabsf(item->xy), fabsf(item->yx)) < 1.0f / 64.0f))
+        return;
+    item->x = floorf(item->x + 0.5f);
+    item->y = floorf(item->y + 0.5f);
+}
+
 static camber_status add_icon(item_maker *m, const camber_label_candidate *c, uint32_t label) {
     const camber_label_layout *l = m->layout;
     const camber_label_form *form = l->forms + c->form;
@@ -113,6 +125,7 @@ static camber_status add_icon(item_maker *m, const camber_label_candidate *c, ui
     const double at[2] = {box.x0, box.y0}, size[2] = {box.x1 - box.x0, box.y1 - box.y0};
     camber_label_item item = {.glyph = CAMBER_NO_GLYPH, .icon = form->icon, .look = rule->icon_look, .label = label};
     set_matrix(m, c, &item, &frame, at, size, false);
+    snap_image(l, &item);
     if (rule->symbol.text_fit != CAMBER_FIT_NONE && form->text)
         item.unstretched_px = (float)(l->view->ratio * (l->window ? l->window->scale : 1.0) / form->icon->pixel_ratio *
                                       hypot(frame.xx, frame.yx));
@@ -268,24 +281,33 @@ static camber_status make_layer(item_maker *m, const camber_layout_layer *layer,
     return status;
 }
 
-/* Copies the looks, whose lengths are those of the layout's view. */
-static camber_status copy_looks(const camber_label_layout *layout, camber_labels *labels) {
+/* Copies the looks that items have; the layout may have more, of other views. Their lengths are those of the layout's
+ * view. */
+static camber_status take_looks(const camber_label_layout *layout, camber_labels *labels) {
     const float scale = layout->window ? (float)layout->window->scale : 1.0f;
-    if (!(labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks)))
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < layout->look_count; i++) {
-        labels->looks[i] = layout->looks[i];
-        labels->looks[i].halo_width_px *= scale;
-        labels->looks[i].halo_blur_px *= scale;
-    }
-    labels->look_count = layout->look_count;
-    return CAMBER_OK;
+    uint32_t *numbers = camber_alloc_zero(labels->context, layout->look_count, sizeof *numbers); /* + 1; 0: none yet */
+    labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks);
+    if (numbers && labels->looks)
+        for (size_t i = 0; i < labels->item_count; i++) {
+            uint32_t *look = &labels->items[i].look;
+            if (!numbers[*look]) {
+                camber_label_look *made = labels->looks + labels->look_count++;
+                *made = layout->looks[*look];
+                made->halo_width_px *= scale;
+                made->halo_blur_px *= scale;
+                numbers[*look] = (uint32_t)labels->look_count;
+            }
+            *look = numbers[*look] - 1;
+        }
+    const camber_status status = numbers && labels->looks ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_free(labels->context, numbers);
+    return status;
 }
 
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels) {
     item_maker m = {.layout = layout, .labels = labels, .track.context = layout->context};
     labels->layers = camber_alloc(labels->context, layout->layer_count, sizeof *labels->layers);
-    camber_status status = labels->layers ? copy_looks(layout, labels) : CAMBER_ERROR_MEMORY;
+    camber_status status = labels->layers ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < layout->layer_count && status == CAMBER_OK; i++) {
         drawn *list = NULL;
         size_t count;
@@ -296,5 +318,5 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
     }
     camber_free(layout->context, m.track.points);
     camber_free(layout->context, m.glyphs);
-    return status;
+    return status == CAMBER_OK ? take_looks(layout, labels) : status;
 }

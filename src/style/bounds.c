@@ -43,7 +43,17 @@ static bool is_operator(const json_t *array, const char *name) {
     return own && strcmp(own, name) == 0;
 }
 
+/* Bounds an item of a list: by the largest number of the list, if the document has it as a literal. */
+static double bound_of_item(const json_t *array, int depth) {
+    const json_t *literal = json_array_get(array, 2), *list = json_array_get(literal, 1);
+    return is_operator(literal, "literal") && json_is_array(list) ? largest(list, 0, 1, false, depth) : INFINITY;
+}
+
 static double bound_of_expression(const json_t *array, int depth) {
+    if (is_operator(array, "let"))
+        return bound_of(json_array_get(array, json_array_size(array) - 1), depth);
+    if (is_operator(array, "at"))
+        return bound_of_item(array, depth);
     if (is_operator(array, "match"))
         return largest(array, 3, 2, true, depth);
     if (is_operator(array, "case"))

@@ -103,6 +103,12 @@ static void test_bounds(void **state) {
     /* Where it fails the default stands. */
     expect_bound(it, "[\"match\",[\"get\",\"kind\"],\"a\",0.5,0.25]", 3, 1);
     expect_bound(it, "[\"to-number\",[\"get\",\"width\"],2]", 3, INFINITY);
+    expect_bound(it,
+                 "[\"let\",\"n\",[\"to-number\",[\"get\",\"width\"],0],"
+                 "[\"interpolate\",[\"linear\"],[\"zoom\"],5,[\"at\",[\"var\",\"n\"],[\"literal\",[2,3]]],"
+                 "10,[\"at\",[\"var\",\"n\"],[\"literal\",[0,7]]]]]",
+                 3, 7);
+    expect_bound(it, "[\"let\",\"n\",[\"to-number\",[\"get\",\"width\"],0],[\"var\",\"n\"]]", 3, INFINITY);
     expect_bound(it, "[\"*\",0,[\"to-number\",[\"get\",\"width\"],2]]", 3, INFINITY);
     expect_bound(it,
                  "[\"interpolate\",[\"cubic-bezier\",0,1,1,0],[\"zoom\"],0,1,20,[\"match\",[\"get\",\"k\"],\"a\",6,1]]",

@@ -254,6 +254,10 @@ typedef struct camber_tiles_draw_desc {
      * draws them, and the engine cannot draw afterwards. The deepest zoom is then drawn first, so that PMTiles are
      * copied at the end. NULL: the points are kept. */
     camber_features *spent;
+    /* A file that records which labels are in which tile. It is written once the archive is complete. With renew and
+     * tiles, it is read first, if it exists: tiles whose labels have changed since then are drawn, too, although they
+     * are not listed. Not with shards or a schedule. NULL: nothing is recorded. */
+    const char *label_record;
     /* Called as soon as no other process can write this output (camber_tiles_beside). NULL: not called. */
     void (*begun)(void *user);
     void *user;
@@ -264,12 +268,13 @@ typedef struct camber_tiles_stats {
     uint64_t background; /* tiles that were drawn, but left out because they show only the background */
     /* pictures that were drawn; once its tiles are written, a picture survives the end of the process */
     uint64_t units;
-    uint64_t resumed;  /* units that an earlier run had already drawn */
-    uint64_t emptied;  /* renew: tiles that the archive had and that are empty now */
-    uint64_t left_out; /* renew: tiles of the list that are outside the zooms and bounds */
-    uint64_t points;   /* points that were drawn, counted once per zoom and metatile */
-    uint64_t bytes;    /* bytes of the tiles; for a dry run, an estimate from sample pictures */
-    bool done;         /* resume, renew: there was nothing left to do */
+    uint64_t resumed;    /* units that an earlier run had already drawn */
+    uint64_t emptied;    /* renew: tiles that the archive had and that are empty now */
+    uint64_t left_out;   /* renew: tiles of the list that are outside the zooms and bounds */
+    uint64_t relabelled; /* renew: tiles that were added to the list because their labels have changed */
+    uint64_t points;     /* points that were drawn, counted once per zoom and metatile */
+    uint64_t bytes;      /* bytes of the tiles; for a dry run, an estimate from sample pictures */
+    bool done;           /* resume, renew: there was nothing left to do */
     double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make_ms: for networks and passes */
     /* summed over all encoding threads: wall-clock time, and processor time */
     double encode_ms, encode_cpu_ms;

@@ -36,11 +36,10 @@ typedef struct camber_gpu_backend {
     size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
     /* Logs a call that failed during the search, and returns the status for its error code. */
     camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
-    /* Whether the device has kernels for the work-group size and number of lanes of a desc. NULL: it has all. */
-    bool (*has_kernels)(const camber_found_device *found, uint32_t work_group_size, uint32_t lanes);
     /* Sets device->native and the fields that only the back end knows: rounds_correctly, host_memory, gl_context, and
-     * lanes if they are 0. close is called even if this failed. */
-    camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl);
+     * lanes if they are 0; also info.compute_units, if the desc's threads decide it. close is called even if this
+     * failed. */
+    camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_device_desc *desc);
     void (*close)(camber_device *device);
     /* These two fail without a message unless is_told. */
     camber_status (*finish)(const camber_device *device, bool is_told);

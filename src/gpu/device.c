@@ -14,8 +14,8 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-static bool has_kernels(const camber_found_device *found, const camber_device_desc *desc) {
-    return !found->backend->has_kernels || found->backend->has_kernels(found, desc->work_group_size, desc->lanes);
+static bool has_kernels(const camber_device_info *info, const camber_device_desc *desc) {
+    return !info->fixed_kernels || (desc->work_group_size == 0 && desc->lanes == 0);
 }
 
 /* Picks the best matching device: a GPU, else a CPU, else any other. If number is not 0, picks the number-th matching
@@ -42,7 +42,7 @@ static camber_status choose_device(camber_device *device, const camber_device_de
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
         if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
-        if (!has_kernels(&found[i], desc)) {
+        if (!has_kernels(&info, desc)) {
             lacks_kernels = true;
             continue;
         }
@@ -126,7 +126,7 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     made->info = found.info;
     if (status == CAMBER_OK) {
         apply_bounds(made, &full);
-        status = found.backend->open(made, &found, &full.gl);
+        status = found.backend->open(made, &found, &full);
     }
     if (status == CAMBER_OK)
         bound_memory(made, &full);

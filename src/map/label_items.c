@@ -281,24 +281,33 @@ static camber_status make_layer(item_maker *m, const camber_layout_layer *layer,
     return status;
 }
 
-/* Copies the looks, whose lengths are those of the layout's view. */
-static camber_status copy_looks(const camber_label_layout *layout, camber_labels *labels) {
+/* Copies the looks that items have; the layout may have more, of other views. Their lengths are those of the layout's
+ * view. */
+static camber_status take_looks(const camber_label_layout *layout, camber_labels *labels) {
     const float scale = layout->window ? (float)layout->window->scale : 1.0f;
-    if (!(labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks)))
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < layout->look_count; i++) {
-        labels->looks[i] = layout->looks[i];
-        labels->looks[i].halo_width_px *= scale;
-        labels->looks[i].halo_blur_px *= scale;
-    }
-    labels->look_count = layout->look_count;
-    return CAMBER_OK;
+    uint32_t *numbers = camber_alloc_zero(labels->context, layout->look_count, sizeof *numbers); /* + 1; 0: none yet */
+    labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks);
+    if (numbers && labels->looks)
+        for (size_t i = 0; i < labels->item_count; i++) {
+            uint32_t *look = &labels->items[i].look;
+            if (!numbers[*look]) {
+                camber_label_look *made = labels->looks + labels->look_count++;
+                *made = layout->looks[*look];
+                made->halo_width_px *= scale;
+                made->halo_blur_px *= scale;
+                numbers[*look] = (uint32_t)labels->look_count;
+            }
+            *look = numbers[*look] - 1;
+        }
+    const camber_status status = numbers && labels->looks ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_free(labels->context, numbers);
+    return status;
 }
 
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels) {
     item_maker m = {.layout = layout, .labels = labels, .track.context = layout->context};
     labels->layers = camber_alloc(labels->context, layout->layer_count, sizeof *labels->layers);
-    camber_status status = labels->layers ? copy_looks(layout, labels) : CAMBER_ERROR_MEMORY;
+    camber_status status = labels->layers ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < layout->layer_count && status == CAMBER_OK; i++) {
         drawn *list = NULL;
         size_t count;
@@ -309,5 +318,5 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
     }
     camber_free(layout->context, m.track.points);
     camber_free(layout->context, m.glyphs);
-    return status;
+    return status == CAMBER_OK ? take_looks(layout, labels) : status;
 }

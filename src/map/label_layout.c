@@ -1,7 +1,8 @@
 /* Finds where the labels of a view or of a domain may be placed.
  *
  * Input: the things that may be seen. Output: candidates by layer. Main idea: things are sorted by class. Each layer is
- * evaluated once per class, because all features of a class give the same result. */
+ * evaluated once per class, because all features of a class give the same result. A layout that is kept for views which
+ * differ only in their place keeps these results, too. */
 #include "map/label_layout.h"
 
 #include <math.h>
@@ -9,12 +10,17 @@
 /* How far outside the picture an anchor may be if its label reaches into the picture, CSS px. */
 static const double REACH_PX = 320.0;
 
+/* What is known of a class after all layers were evaluated: whether one of them shows it. */
+enum { CLASS_UNKNOWN = 0, CLASS_IS_SILENT, CLASS_SPEAKS };
+
 typedef struct layout_maker {
     camber_label_layout *layout;
     camber_box corners; /* box around what is seen, world coordinates */
     camber_box seen;    /* the same, widened by the reach of the current labels */
     const camber_layer_look *look;
-    uint32_t form;
+    uint32_t *classes; /* class_count that have things and may have labels */
+    size_t class_count, class_capacity;
+    uint32_t class, form;
     camber_label_path path; /* of the current line, px from origin */
     size_t path_capacity[2];
     double origin[2]; /* world coordinates of its first point */
@@ -23,7 +29,7 @@ typedef struct layout_maker {
     size_t ring_capacity;
 } layout_maker;
 
-/* ---- What is seen ---- */
+/* ---- The seen part of the world ---- */
 
 double camber_label_whole_zoom_px(const camber_view *view) {
     const double zoom = camber_view_style_zoom(view);
@@ -335,12 +341,10 @@ static camber_status anchor_point(layout_maker *m, const camber_label_thing *t, 
     return status;
 }
 
-/* Anchors the polygon whose rings are from first up to end. */
-static camber_status anchor_polygon(layout_maker *m, const camber_label_thing *t, size_t first, size_t end) {
+/* Finds the pole of the polygon whose rings are from first up to end, px from its first point. *found is false if the
+ * polygon has no points. */
+static camber_status find_pole(layout_maker *m, size_t first, size_t end, double pole[2], bool *found) {
     const camber_features *f = m->layout->features;
-    const camber_box box = camber_label_box_of(f, first, first + 1);
-    if (box.x0 > box.x1 || !find_worlds(m, &box))
-        return CAMBER_OK;
     const double scale = m->layout->view->scale_px, *origin = f->points + 2 * f->offsets[first];
     if (!make_room(m, f->offsets[end] - f->offsets[first]) ||
         !camber_grow(f->context, &m->ring_offsets, &m->ring_capacity, end - first + 1, sizeof *m->ring_offsets))
@@ -356,13 +360,45 @@ static camber_status anchor_polygon(layout_maker *m, const camber_label_thing *t
         }
     }
     m->ring_offsets[end - first] = count;
-    if (count == 0)
+    *found = count > 0;
+    return count ? camber_pole_find(f->context, m->path.points, m->ring_offsets, end - first, m->layout->view->ratio,
+                                    pole)
+                 : CAMBER_OK;
+}
+
+/* As find_pole. Poles are kept with forms, because they are the same wherever the view is. */
+static camber_status recall_pole(layout_maker *m, size_t first, size_t end, double pole[2], bool *found) {
+    camber_label_layout *l = m->layout;
+    const uint32_t known = camber_number_map_get(&l->pole_numbers, (uint32_t)first);
+    if (known) {
+        memcpy(pole, l->poles + 2 * (known - 1), 2 * sizeof *pole);
+        *found = true;
         return CAMBER_OK;
+    }
+    const camber_status status = find_pole(m, first, end, pole, found);
+    if (status != CAMBER_OK || !*found || !l->keeps_forms)
+        return status;
+    if (!camber_grow(l->context, &l->poles, &l->pole_capacity, 2 * (l->pole_count + 1), sizeof *l->poles) ||
+        !camber_number_map_set(l->context, &l->pole_numbers, (uint32_t)first, (uint32_t)l->pole_count + 1))
+        return CAMBER_ERROR_MEMORY;
+    memcpy(l->poles + 2 * l->pole_count++, pole, 2 * sizeof *pole);
+    return CAMBER_OK;
+}
+
+/* Anchors the polygon whose rings are from first up to end. */
+static camber_status anchor_polygon(layout_maker *m, const camber_label_thing *t, size_t first, size_t end) {
+    const camber_features *f = m->layout->features;
+    const camber_box box = camber_label_box_of(f, first, first + 1);
+    const double scale = m->layout->view->scale_px, *origin = f->points + 2 * f->offsets[first];
     double pole[2];
-    const camber_status status =
-        camber_pole_find(f->context, m->path.points, m->ring_offsets, end - first, m->layout->view->ratio, pole);
+    bool found;
+    if (box.x0 > box.x1 || !find_worlds(m, &box))
+        return CAMBER_OK;
+    const camber_status status = recall_pole(m, first, end, pole, &found);
+    if (status != CAMBER_OK || !found)
+        return status;
     const double place[2] = {origin[0] + pole[0] / scale, origin[1] + pole[1] / scale};
-    return status == CAMBER_OK ? anchor_point(m, t, place) : status;
+    return anchor_point(m, t, place);
 }
 
 /* Whether a ring is an outer one. Points that are left out do not count, since they may have been dropped. */
@@ -437,38 +473,96 @@ static double reach_of(const camber_label_layout *l, uint32_t form_index) {
     return (l->lens.pitched ? 3.0 : 1.5) * reach + CAMBER_LABEL_MARGIN_PX * l->view->ratio;
 }
 
-static camber_status lay_out_class(layout_maker *m, uint32_t class_index) {
+/* Finds what the layer's labels of the class show: the number of a form, or CAMBER_NO_FORM. */
+static camber_status make_form(layout_maker *m, uint32_t *form) {
     const camber_features *f = m->layout->features;
-    const camber_feature_class *class = f->classes + class_index;
+    const camber_feature_class *class = f->classes + m->class;
+    *form = CAMBER_NO_FORM;
     if (!camber_plan_comes_to(f, m->look->layer, class))
         return CAMBER_OK;
     const camber_feature_view feature = camber_plan_view_of(f, class);
     if (!camber_style_layer_matches(m->look->layer, m->look->zoom, &feature))
         return CAMBER_OK;
-    camber_status status = camber_label_form_make(m->layout, m->look, class, &m->form);
+    return camber_label_form_make(m->layout, m->look, class, form);
+}
+
+/* known: the forms of the layer's classes; 0: not found yet, otherwise the form's number + 2, or 1 for none. NULL: they
+ * are not kept. */
+static camber_status lay_out_class(layout_maker *m, uint32_t *known) {
+    camber_status status = CAMBER_OK;
+    if (known && known[m->class] == 1)
+        return CAMBER_OK;
+    if (known && known[m->class]) {
+        m->form = known[m->class] - 2;
+    } else {
+        status = make_form(m, &m->form);
+        if (status == CAMBER_OK && known)
+            known[m->class] = m->form == CAMBER_NO_FORM ? 1 : m->form + 2;
+        if (status == CAMBER_OK && known && m->form != CAMBER_NO_FORM)
+            m->layout->class_states[m->class] = CLASS_SPEAKS;
+    }
     if (status != CAMBER_OK || m->form == CAMBER_NO_FORM)
         return status;
     set_reach(m, fmin(reach_of(m->layout, m->form), REACH_PX * m->layout->view->ratio));
     const camber_label_things *things = m->layout->things;
-    for (size_t i = things->class_first[class_index]; i < things->class_first[class_index + 1] && status == CAMBER_OK;
-         i++)
+    for (size_t i = things->class_first[m->class]; i < things->class_first[m->class + 1] && status == CAMBER_OK; i++)
         status = anchor_thing(m, things->items + i);
     return status;
+}
+
+/* Lists the classes of the things, without those that no layer shows. */
+static camber_status list_classes(layout_maker *m) {
+    camber_label_layout *l = m->layout;
+    const camber_label_things *things = l->things;
+    if (l->keeps_forms && !l->class_states &&
+        !(l->class_states = camber_alloc_zero(l->context, l->features->class_count, sizeof *l->class_states)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < things->count; i = things->class_first[things->items[i].class + 1]) {
+        const uint32_t class = things->items[i].class;
+        if (l->keeps_forms && l->class_states[class] == CLASS_IS_SILENT)
+            continue;
+        if (!camber_grow(l->context, &m->classes, &m->class_capacity, m->class_count + 1, sizeof *m->classes))
+            return CAMBER_ERROR_MEMORY;
+        m->classes[m->class_count++] = class;
+    }
+    return CAMBER_OK;
+}
+
+/* Notes which classes no layer shows, after all layers were evaluated. */
+static void note_silent_classes(const layout_maker *m) {
+    for (size_t i = 0; i < m->class_count; i++)
+        if (m->layout->class_states[m->classes[i]] == CLASS_UNKNOWN)
+            m->layout->class_states[m->classes[i]] = CLASS_IS_SILENT;
+}
+
+/* Returns the table of a layer's forms. NULL: there is no memory. */
+static uint32_t *known_forms(camber_label_layout *l, size_t index) {
+    const size_t layers = l->features->style->layer_count;
+    if (!l->known_forms) {
+        if (!(l->known_forms = camber_alloc_zero(l->context, layers, sizeof *l->known_forms)))
+            return NULL;
+        l->known_count = layers;
+    }
+    if (!l->known_forms[index])
+        l->known_forms[index] = camber_alloc_zero(l->context, l->features->class_count, sizeof **l->known_forms);
+    return l->known_forms[index];
 }
 
 static camber_status lay_out_layer(layout_maker *m, size_t index, double zoom) {
     camber_label_layout *l = m->layout;
     const camber_style_layer *layer = l->features->style->layers + index;
-    if (layer->kind != CAMBER_LAYER_SYMBOL || !layer->visible || zoom < layer->min_zoom ||
+    if (layer->kind != CAMBER_LAYER_SYMBOL || zoom < layer->min_zoom ||
         (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
         return CAMBER_OK;
     const camber_layer_look look = camber_style_layer_look(layer, zoom);
     const size_t first = l->candidate_count;
-    camber_status status = CAMBER_OK;
+    uint32_t *known = l->keeps_forms ? known_forms(l, index) : NULL;
+    camber_status status = known || !l->keeps_forms ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     m->look = &look;
-    for (size_t c = 0; c < l->features->class_count && status == CAMBER_OK; c++)
-        if (l->things->class_first[c] < l->things->class_first[c + 1])
-            status = lay_out_class(m, (uint32_t)c);
+    for (size_t i = 0; i < m->class_count && status == CAMBER_OK; i++) {
+        m->class = m->classes[i];
+        status = lay_out_class(m, known);
+    }
     m->look = NULL;
     if (status != CAMBER_OK || l->candidate_count == first)
         return status;
@@ -487,11 +581,15 @@ camber_box camber_label_seen(const camber_view *view) {
 camber_status camber_label_layout_make(camber_label_layout *layout) {
     const double zoom = camber_view_style_zoom(layout->view);
     layout_maker m = {.layout = layout, .corners = find_corners(layout->view), .anchors.context = layout->context};
-    camber_status status = CAMBER_OK;
+    camber_status status = list_classes(&m);
     layout->lens = camber_view_lens_of(layout->view);
+    layout->layer_count = layout->candidate_count = layout->line_count = layout->line_point_count = 0;
     set_reach(&m, REACH_PX * layout->view->ratio);
-    for (size_t i = 0; i < layout->features->style->layer_count && layout->things->count && status == CAMBER_OK; i++)
+    for (size_t i = 0; i < layout->features->style->layer_count && m.class_count && status == CAMBER_OK; i++)
         status = lay_out_layer(&m, i, zoom);
+    if (status == CAMBER_OK && layout->keeps_forms)
+        note_silent_classes(&m);
+    camber_free(layout->context, m.classes);
     camber_free(layout->context, m.path.points);
     camber_free(layout->context, m.path.along);
     camber_free(layout->context, m.anchors.items);
@@ -502,6 +600,12 @@ camber_status camber_label_layout_make(camber_label_layout *layout) {
 void camber_label_layout_free(camber_label_layout *layout) {
     camber_context *context = layout->context;
     camber_label_words_free(layout);
+    for (size_t i = 0; i < layout->known_count; i++)
+        camber_free(context, layout->known_forms[i]);
+    camber_free(context, layout->known_forms);
+    camber_free(context, layout->class_states);
+    camber_free(context, layout->poles);
+    camber_number_map_free(context, &layout->pole_numbers);
     camber_free(context, layout->layers);
     camber_free(context, layout->rules);
     camber_free(context, layout->forms);

@@ -9,6 +9,7 @@
 #include "map/label_things.h"
 #include "map/labels.h"
 #include "style/symbol.h"
+#include "text/number_map.h"
 
 #define CAMBER_NO_PATH UINT32_MAX
 /* Labels collide up to this far outside the picture, in CSS px, so that they seldom change while a map moves. */
@@ -99,6 +100,8 @@ typedef struct camber_layout_layer {
     size_t first_candidate, candidate_count;
 } camber_layout_layer;
 
+/* Rules, forms, runs, looks and words depend on the features and on the view's zoom, ratio, bearing and pitch, but not
+ * on its place. So a layout can be made again for another place. */
 typedef struct camber_label_layout {
     camber_context *context;
     const camber_features *features;
@@ -127,14 +130,21 @@ typedef struct camber_label_layout {
     float *line_points; /* pairs, relative to their lines' points */
     size_t line_point_count, line_point_capacity;
     struct camber_label_words *words; /* texts that were shaped (label_text.c) */
+    bool keeps_forms;                 /* it is made for several views, so that it keeps the following */
+    uint32_t **known_forms; /* known_count tables by layer of the style: the forms of classes, NULL: none yet */
+    size_t known_count;
+    uint8_t *class_states; /* by class (label_layout.c); NULL: none yet */
+    double *poles;         /* of areas: pole_count pairs, px from an area's first point */
+    size_t pole_count, pole_capacity;
+    camber_number_map pole_numbers; /* the number of an area's first polyline -> its pole's number + 1 */
 } camber_label_layout;
 
 /* Call it even after a failure. */
 void camber_label_layout_free(camber_label_layout *layout);
 /* Returns how many device px a CSS px of the last whole zoom has in the view: from 1 to less than 2 times the ratio. */
 double camber_label_whole_zoom_px(const camber_view *view);
-/* Finds the candidates of a view or of a domain. The caller has set the members from context to sprites. Returns
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+/* Finds the candidates of a view or of a domain, and forgets those that were found before. The caller has set the
+ * members from context to sprites. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_label_layout_make(camber_label_layout *layout);
 /* Returns the part of the world in which things may have labels that reach into a view. */
 camber_box camber_label_seen(const camber_view *view);

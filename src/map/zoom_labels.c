@@ -103,7 +103,7 @@ static unsigned find_copies(const label_block *block, const camber_box *label, c
     return copies;
 }
 
-/* ---- What labels draw ---- */
+/* ---- Pixels of labels ---- */
 
 /* Returns how far a text's pixels may be from what it takes up when labels collide, em. */
 static double find_overhang(camber_fonts *fonts, const camber_text *text, bool along) {

@@ -339,7 +339,13 @@ macro(append_network out theme schema prefix rails)
       set(id ${prefix}bridge-${height})
     endif()
     if(${schema}_levels GREATER 1)
-      list(GET road_heights ${height} comparison)
+      # The layers up to 1 are the first level, and the last level has all above.
+      set(comparison "==")
+      if(height EQUAL 1)
+        set(comparison "<=")
+      elseif(height EQUAL ${schema}_levels)
+        set(comparison ">=")
+      endif()
       string(CONCAT on_bridge "[\"all\", ${on_bridge}, [\"${comparison}\", "
              "[\"to-number\", [\"get\", \"layer\"], 1], ${height}]]")
     endif()
@@ -350,9 +356,6 @@ macro(append_network out theme schema prefix rails)
     endif()
   endforeach()
 endmacro()
-# How the layer of a bridge compares with the number of each level: up to 1, 2, from 3 on.
-set(road_heights "" "<=" "==" ">=")
-
 # Appends a layer for features that no other layer draws: lines, whose width is the same at all zooms, or points, drawn
 # as dots by round caps and some px wider.
 function(plain_lines out what filter more)

@@ -11,7 +11,6 @@
 #include <math.h>
 
 enum {
-    PICTURE_PX = 2048,
     LEAST_TILE_PX = 64,
     /* At higher zooms the census would grow without limit, because lines pass through more and more tiles. Tiles on
      * demand use a census in tiles of this zoom instead; each of these contains few lines. */
@@ -50,10 +49,10 @@ static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: a tile size of %u; choose 256 or 512",
                            own->tile_size);
     const double tile_px = camber_engine_tile_px(own);
-    if (!(tile_px >= LEAST_TILE_PX && tile_px <= PICTURE_PX))
+    if (!(tile_px >= LEAST_TILE_PX && tile_px <= CAMBER_PICTURE_PX))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: a ratio of %g makes %g px of a tile of %u; choose a ratio that makes %d to %d",
-                           own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, PICTURE_PX);
+                           own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, CAMBER_PICTURE_PX);
     if (!(own->simplify_px >= 0.0 && isfinite(own->simplify_px)))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: a simplification of %g px; choose 0 or a distance in pixels", own->simplify_px);
@@ -117,14 +116,6 @@ size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engine *engine) 
 }
 
 /* ---- Zooms ---- */
-
-uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom) {
-    const uint32_t most = engine->desc.on_demand_side ? engine->desc.on_demand_side : CAMBER_METATILE_SIDE_MOST;
-    uint32_t side = 1;
-    for (int i = 0; i < zoom && side < most && 2 * side * engine->tile_px <= PICTURE_PX; i++)
-        side *= 2;
-    return side;
-}
 
 /* Returns the zoom in whose tiles the census of a zoom is taken. */
 static int census_zoom(const camber_tiles_engine *engine, int zoom) {

@@ -8,6 +8,9 @@
 #include "tiles/census.h"
 #include "tiles/mesh_tile.h"
 
+/* The longest side of a picture of several tiles. */
+enum { CAMBER_PICTURE_PX = 2048 };
+
 typedef struct camber_engine_zoom {
     camber_zoom_plan *plan;     /* NULL: not evaluated yet */
     camber_mesh_plan *mesh;     /* if tiles are meshes: the mesh plan, which owns plan. NULL: tiles are pictures */
@@ -40,7 +43,13 @@ double camber_engine_tile_px(const camber_tiles_engine_desc *desc);
 /* Returns how the style is evaluated for tiles of a zoom. */
 camber_zoom_desc camber_engine_zoom_desc(const camber_tiles_engine_desc *desc, int zoom);
 /* Returns how many tiles a picture has on a side. For archives, a metatile of the census has the same size. */
-uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom);
+static inline uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom) {
+    const uint32_t most = engine->desc.on_demand_side ? engine->desc.on_demand_side : CAMBER_METATILE_SIDE_MOST;
+    uint32_t side = 1;
+    for (int i = 0; i < zoom && side < most && 2 * side * engine->tile_px <= CAMBER_PICTURE_PX; i++)
+        side *= 2;
+    return side;
+}
 /* Finds the labels of a zoom whose plan has been evaluated; NULL if no fonts were read with the features, or if tiles
  * are meshes (label_tiles.c). */
 camber_status camber_engine_get_labels(camber_tiles_engine *engine, int zoom, camber_zoom_labels **labels);

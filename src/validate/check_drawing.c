@@ -395,7 +395,7 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
             if (status == CAMBER_OK && takes_strips)
                 status = check_slices(v, s, checked, drawer);
-            for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
+            for (size_t n = 0; n < checked->group_count && status == CAMBER_OK && v->desc->full; n++)
                 status = check_lanes(v, s, checked, drawer->name, n);
         }
     return status;

@@ -583,6 +583,107 @@ static void test_avoid_edges(void **state) {
     close_town(t);
 }
 
+/* ---- Books ---- */
+
+static void expect_same(const camber_labels *got, const camber_labels *expected) {
+    assert_int_equal(got->label_count, expected->label_count);
+    assert_int_equal(got->layer_count, expected->layer_count);
+    assert_int_equal(got->item_count, expected->item_count);
+    assert_int_equal(got->look_count, expected->look_count);
+    for (size_t i = 0; i < got->label_count; i++) {
+        assert_int_equal(got->labels[i].feature, expected->labels[i].feature);
+        assert_memory_equal(&got->labels[i].box, &expected->labels[i].box, sizeof(camber_box));
+    }
+    for (size_t i = 0; i < got->layer_count; i++)
+        assert_memory_equal(got->layers + i, expected->layers + i, sizeof *got->layers);
+    for (size_t i = 0; i < got->item_count; i++) {
+        const camber_label_item *a = got->items + i, *b = expected->items + i;
+        assert_int_equal(a->glyph, b->glyph);
+        assert_ptr_equal(a->icon, b->icon);
+        assert_int_equal(a->label, b->label);
+        assert_memory_equal(&a->x, &b->x, 7 * sizeof(float));
+        const camber_label_look *p = got->looks + a->look, *q = expected->looks + b->look;
+        assert_memory_equal(p, q, offsetof(camber_label_look, flat)); /* what follows has padding */
+        assert_true(p->flat == q->flat);
+    }
+}
+
+static void expect_book(town *t, camber_label_book *book, const camber_view_desc *desc) {
+    camber_view view;
+    camber_labels got;
+    assert_int_equal(camber_view_create(t->context, desc, &view), CAMBER_OK);
+    t->view = view;
+    camber_labels expected = place(t);
+    assert_true(expected.label_count > 10);
+    assert_int_equal(camber_label_book_place(book, &view, &got), CAMBER_OK);
+    expect_same(&got, &expected);
+    camber_labels_free(&got);
+    camber_labels_free(&expected);
+}
+
+/* A book gives the labels that each view has for itself, in whatever order views come, and also after features were
+ * added. */
+static void test_book(void **state) {
+    (void)state;
+    static const double square[] = {300, 300, 700, 300, 700, 520, 300, 520, 300, 300};
+    static const camber_view_desc views[] = {
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .longitude = 30, .latitude = -20},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .longitude = 170, .width = 500, .height = 300},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1.7, .longitude = 30},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1.7, .longitude = -30},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .bearing_deg = 33},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .bearing_deg = 33, .longitude = 9},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .pitch_deg = 50},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .pitch_deg = 50, .latitude = 10},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .ratio = 2},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1}};
+    town *t = open_town(MANY);
+    camber_label_book *book;
+    add_many(t, 23, false);
+    add_feature(t, CAMBER_GEOMETRY_LABEL_AREA, "Park", square, 5);
+    t->features.fonts = t->fonts;
+    t->features.sprites = &t->sprites;
+    assert_int_equal(camber_label_book_create(&t->features, &book), CAMBER_OK);
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++)
+        expect_book(t, book, views + i);
+    add_point(t, "New", 480, 480);
+    add_point(t, "Newer", 40, 80);
+    expect_book(t, book, views);
+    t->features.sprites = NULL; /* it is no block that the features may free */
+    camber_label_book_destroy(book);
+    close_town(t);
+}
+
+/* A book that runs out of memory gives the same labels as soon as there is some. */
+static void test_book_memory(void **state) {
+    (void)state;
+    town *t = open_town(MANY);
+    camber_label_book *book;
+    camber_labels labels;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    size_t failures = 0;
+    add_many(t, 29, false);
+    t->features.fonts = t->fonts;
+    assert_int_equal(camber_label_book_create(&t->features, &book), CAMBER_OK);
+    camber_labels expected = place(t);
+    const uint64_t held = t->context->budget->held_bytes;
+    for (uint64_t more = 0; status != CAMBER_OK; more += 4096 + more / 16) {
+        camber_budget_allow(t->context->budget, held + more);
+        status = camber_label_book_place(book, &t->view, &labels);
+        assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
+        failures += status != CAMBER_OK;
+        if (status != CAMBER_OK)
+            camber_labels_free(&labels);
+    }
+    assert_true(failures > 10);
+    expect_same(&labels, &expected);
+    camber_labels_free(&labels);
+    camber_labels_free(&expected);
+    camber_label_book_destroy(book);
+    close_town(t);
+}
+
 /* Without memory placing fails, and leaves nothing behind. */
 static void test_memory(void **state) {
     (void)state;
@@ -633,6 +734,8 @@ int main(void) {
         cmocka_unit_test(test_shuffled),
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_avoid_edges),
+        cmocka_unit_test(test_book),
+        cmocka_unit_test(test_book_memory),
         cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

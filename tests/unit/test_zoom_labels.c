@@ -234,7 +234,7 @@ static void test_crowded_seam(void **state) {
     close_town(t);
 }
 
-/* ---- What must not matter ---- */
+/* ---- Order and ratio ---- */
 
 static int compare_items(const void *a, const void *b) {
     return memcmp(&((const camber_label_item *)a)->x, &((const camber_label_item *)b)->x, 6 * sizeof(float));

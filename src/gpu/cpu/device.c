@@ -52,6 +52,7 @@ static size_t find(camber_found_device *found, size_t capacity, camber_failed_ca
     snprintf(info->platform, sizeof info->platform, "kernels compiled ahead of time");
     snprintf(info->version, sizeof info->version, "%s", CAMBER_CPU_COMPILER);
     snprintf(info->driver, sizeof info->driver, "%s", camber_version());
+    info->fixed_kernels = true;
     info->type = CAMBER_DEVICE_TYPE_CPU;
     info->compute_units = (uint32_t)camber_threads_count(0);
     info->memory_bytes = info->largest_buffer_bytes = machine_bytes();
@@ -67,8 +68,8 @@ static camber_status fail(camber_context *context, const camber_failed_call *fai
     return camber_fail(context, CAMBER_ERROR_DEVICE, "%s fails; try another device", failed->name);
 }
 
-static camber_status open_device(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl) {
-    (void)gl;
+static camber_status open_device(camber_device *device, const camber_found_device *found,
+                                 const camber_device_desc *desc) {
     cpu_device *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -77,12 +78,8 @@ static camber_status open_device(camber_device *device, const camber_found_devic
     device->lanes = made->level->lanes;
     device->rounds_correctly = true;
     device->host_memory = true;
+    device->info.compute_units = (uint32_t)camber_threads_count(desc->threads);
     return camber_cpu_pool_create(device->context, device->info.compute_units, &made->pool);
-}
-
-static bool has_kernels(const camber_found_device *found, uint32_t work_group_size, uint32_t lanes) {
-    const camber_cpu_level *level = found->id;
-    return work_group_size == 0 && (lanes == 0 || lanes == level->lanes);
 }
 
 static void close_device(camber_device *device) {
@@ -258,7 +255,6 @@ const camber_gpu_backend camber_cpu = {
     .check_process = check_process,
     .find = find,
     .fail = fail,
-    .has_kernels = has_kernels,
     .open = open_device,
     .close = close_device,
     .finish = finish,

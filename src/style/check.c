@@ -184,6 +184,11 @@ static void list_type(checker *k, const char *type, size_t layers) {
     k->types[report->type_count++] = (camber_style_type){keep(k, type), layers, drawn};
 }
 
+static size_t count_left_out(const camber_document *d, const char *type) {
+    camber_layer_kind kind;
+    return camber_layer_kind_find(type, &kind) ? d->left_out[kind] : 0;
+}
+
 static void count_types(checker *k, const camber_document *d) {
     const json_t *layer;
     json_t *counts = json_object(), *count;
@@ -197,7 +202,9 @@ static void count_types(checker *k, const camber_document *d) {
             fail_memory(k);
     }
     json_object_foreach(counts, type, count) {
-        list_type(k, type, (size_t)json_integer_value(count));
+        const size_t layers = (size_t)json_integer_value(count), left_out = count_left_out(d, type);
+        if (left_out < layers)
+            list_type(k, type, layers - left_out);
     }
     json_decref(counts);
 }

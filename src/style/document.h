@@ -12,9 +12,10 @@ typedef struct camber_document {
     json_t *root;
     const char *warned[CAMBER_WARNING_LIMIT]; /* names that caused a warning; the strings belong to the document */
     size_t warned_count;
-    json_t *by_id;          /* layers by id, to which others may refer */
-    json_t *source_indices; /* by name */
-    bool collects_errors;   /* continues after errors, to report all of them */
+    json_t *by_id;                       /* layers by id, to which others may refer */
+    json_t *source_indices;              /* by name */
+    size_t left_out[CAMBER_LAYER_KINDS]; /* layers that have an operator that is not supported, by kind */
+    bool collects_errors;                /* continues after errors, to report all of them */
 } camber_document;
 
 /* Reads the bytes into the compiler's empty style, and keeps the root. Returns the compiler's status, or CAMBER_OK in

@@ -367,6 +367,7 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     camber_style_layer_free(c->context, layer);
     memset(layer, 0, sizeof *layer);
     style->layer_count--;
+    d->left_out[kind]++;
     return true;
 }
 

@@ -98,8 +98,17 @@ camber_status camber_features_create(camber_context *context, const camber_style
     return camber_features_create_for(context, &style->schema, style, features);
 }
 
+/* Whether both styles name the same sprites, so that the images that were read serve the other one, too. */
+static bool has_same_sprites(const camber_style *one, const camber_style *other) {
+    bool same = one->sprite_count == other->sprite_count;
+    for (size_t i = 0; same && i < one->sprite_count; i++)
+        same = strcmp(one->sprites[i].id, other->sprites[i].id) == 0 &&
+               strcmp(one->sprites[i].url, other->sprites[i].url) == 0;
+    return same;
+}
+
 camber_status camber_features_restyle(camber_features *features, const camber_style *style) {
-    if (style->sprite_count || features->sprites || !camber_features_suit(features, &style->schema, style))
+    if (!has_same_sprites(features->style, style) || !camber_features_suit(features, &style->schema, style))
         return camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
                            "style: it reads other properties or images than the previous style; read the files again");
     features->schema = &style->schema;

@@ -286,7 +286,7 @@ static void test_ratio(void **state) {
 /* A label that reaches too far from its anchor to be settled by its surroundings is left out. */
 static void test_too_long(void **state) {
     (void)state;
-    town *t = open_town(NAMES("names", "\"text-size\":150,\"text-max-width\":100"));
+    town *t = open_town(NAMES("names", "\"text-size\":220,\"text-max-width\":100"));
     add_point(t, "Short", 300.0, 600.0);
     add_point(t, "A long, long n.", 500.0, 600.0);
     placed_town *p = place_town(t, ALL_LEVEL, SIZE_MAX);

@@ -677,6 +677,9 @@ typedef struct camber_pass {
     camber_fill fill;
     camber_overlap overlap;
     float opacity; /* the pass is composited onto the picture as one layer with this opacity. 0: 1, and no layer */
+    /* The polylines are in px of the picture as it is seen, whatever its pitch, and so are their paints' lengths: for
+     * labels that stand upright. false: both are in the plane. It makes no difference without a pitch, or to fills. */
+    bool upright;
 } camber_pass;
 
 /* A picture, made by drawing its passes one over the other. */

@@ -36,7 +36,7 @@ enum {
 #endif
     SEEN = MAPS & ~PYRAMIDS, /* have a single view of a map */
     STYLED = MAPS & ~COMPARE,
-    LABELLED = MAPS & RENDER,
+    LABELLED = MAPS & (RENDER | PYRAMIDS),
     SIGNED = MAPS & (RENDER | TESSELLATE | PYRAMIDS),
 };
 
@@ -182,6 +182,8 @@ const camber_option_spec camber_option_specs[] = {
      "total number of shards, if --shard auto cannot detect it", 1, 65535},
     {"schedule", 0, CAMBER_OPTION_FILE, TILES, FIELD(schedule), "FILE",
      "with --dry-run, write a schedule; otherwise draw from one, reading only what the shard needs"},
+    {"label-record", 0, CAMBER_OPTION_FILE, TILES, FIELD(label_record), "FILE",
+     "record the labels of each tile; --renew then also renews tiles whose labels have changed"},
     {"listen", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(listen), "ADDRESS:PORT",
      "address to listen on (127.0.0.1:8080); port 0 picks a free one"},
     {"public-url", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(public_url), "URL",

@@ -5,6 +5,8 @@
 #include "map/label_layout.h"
 #include "style/unicode.h"
 
+#include <stdlib.h>
+
 /* A text, and the key of what it was made from. */
 typedef struct word {
     uint64_t hash;
@@ -41,6 +43,43 @@ void camber_label_words_free(camber_label_layout *layout) {
     camber_free(layout->context, words->runs);
     camber_free(layout->context, words);
     layout->words = NULL;
+}
+
+static int compare_texts(const void *left, const void *right) {
+    const camber_text *a, *b;
+    memcpy(&a, left, sizeof a);
+    memcpy(&b, right, sizeof b);
+    return a < b ? -1 : a > b;
+}
+
+camber_status camber_label_words_keep(camber_label_layout *layout) {
+    struct camber_label_words *words = layout->words;
+    size_t used = 0, kept = 0;
+    if (!words)
+        return CAMBER_OK;
+    const camber_text **texts = camber_alloc(layout->context, 2 * layout->form_count, sizeof *texts);
+    if (!texts)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < layout->form_count; i++) {
+        texts[used++] = layout->forms[i].text;
+        texts[used++] = layout->forms[i].vertical;
+    }
+    if (used)
+        qsort(texts, used, sizeof *texts, compare_texts);
+    for (size_t i = 0; i < words->count; i++) {
+        camber_text *text = words->items[i].text;
+        if (used && bsearch(&text, texts, used, sizeof *texts, compare_texts))
+            words->items[kept++].text = text;
+        else
+            camber_text_destroy(text);
+    }
+    words->count = kept;
+    camber_free(layout->context, texts);
+    camber_arena_free(&words->arena);
+    camber_free(layout->context, words->slots);
+    words->slots = NULL;
+    words->slot_count = 0;
+    return CAMBER_OK;
 }
 
 static struct camber_label_words *words_of(camber_label_layout *layout) {

@@ -61,6 +61,7 @@ static bool make_frame(const camber_subject *s, const camber_validation_desc *de
         d->passes[pass] = (camber_pass){.mesh = mesh, .paints = paints, .paint_count = s->stroke_count};
     }
     d->passes[1].overlap = CAMBER_OVERLAP_UNITE;
+    d->passes[1].upright = true; /* makes a difference with a pitch */
     d->passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
     d->passes[2].opacity = 0.7f;
     d->frame = (camber_frame){.width = s->width < side ? s->width : side,

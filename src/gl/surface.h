@@ -35,9 +35,6 @@ struct camber_surface {
     bool lost; /* the GL context is lost, and everything in it */
 };
 
-/* hardware.c: whether a folder has files through which a GPU's driver is reached. It is /dev except in tests. */
-bool camber_hardware_in(const char *folder);
-
 /* Makes the surface's GL context current. Every public call that draws begins with this: EGL and OSMesa share one
  * dispatch table, and another surface may have been current. */
 camber_status camber_surface_make_current(camber_surface *surface);

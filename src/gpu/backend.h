@@ -29,8 +29,9 @@ struct camber_buffer {
 
 /* Functions that return a status log why they failed. */
 typedef struct camber_gpu_backend {
+    bool has_drivers;   /* its drivers have to be loaded and set up before they find a device */
     bool counts_memory; /* buffers are made by the context's allocator, which counts them in the run's budget */
-    /* Fails if the drivers would end the process when they are first called. */
+    /* Fails if the drivers would end the process when they are first called. NULL if there are none. */
     camber_status (*check_process)(camber_context *context);
     /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
     size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
@@ -71,11 +72,17 @@ typedef struct camber_gpu_backend {
 
 extern const camber_gpu_backend camber_opencl, camber_cpu;
 
-/* find.c: fails if the drivers, when first called, would end the process or not fit into its memory. */
-camber_status camber_check_drivers(camber_context *context);
 enum { CAMBER_DEVICES_MAX = 64 };
-/* Returns how many devices were found. *failed receives the last call that failed, if any did. */
-size_t camber_find_devices(camber_found_device found[CAMBER_DEVICES_MAX], camber_failed_call *failed);
+typedef struct camber_found_devices {
+    camber_found_device list[CAMBER_DEVICES_MAX];
+    size_t count;
+    camber_failed_call failed; /* the last call that failed, if any did */
+} camber_found_devices;
+
+/* find.c: finds the devices for a desc; NULL: all. Drivers are not asked if the processor itself is what the desc
+ * wants. Fails in a forked child, and if drivers, when first called, would end the process or not fit into its memory.
+ */
+camber_status camber_find_devices(camber_context *context, const camber_device_desc *desc, camber_found_devices *found);
 /* Returns whether match, as in camber_device_desc, names the device. */
 bool camber_device_matches(const camber_device_info *info, const char *match);
 

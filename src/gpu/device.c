@@ -23,12 +23,13 @@ static bool has_kernels(const camber_device_info *info, const camber_device_desc
 static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
     const char *match = desc->match;
     const uint32_t number = desc->number;
-    camber_found_device found[CAMBER_DEVICES_MAX];
-    camber_failed_call failed;
-    const size_t count = camber_find_devices(found, &failed);
-    if (count == 0 && failed.name)
-        return failed.backend->fail(device->context, &failed);
-    if (count == 0)
+    camber_found_devices found;
+    const camber_status status = camber_find_devices(device->context, desc, &found);
+    if (status != CAMBER_OK)
+        return status;
+    if (found.count == 0 && found.failed.name)
+        return found.failed.backend->fail(device->context, &found.failed);
+    if (found.count == 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
                            "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd), "
                            "and let POCL_CACHE_DIR name a folder that PoCL can write to");
@@ -36,8 +37,8 @@ static camber_status choose_device(camber_device *device, const camber_device_de
     uint32_t seen = 0;
     int best = -1;
     bool lacks_kernels = false;
-    for (size_t i = 0; i < count; i++) {
-        const camber_device_info info = found[i].info;
+    for (size_t i = 0; i < found.count; i++) {
+        const camber_device_info info = found.list[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
         if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
@@ -47,7 +48,7 @@ static camber_status choose_device(camber_device *device, const camber_device_de
             continue;
         }
         best = rank(&info);
-        *chosen = found[i];
+        *chosen = found.list[i];
     }
     if (best < 0 && lacks_kernels)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
@@ -118,8 +119,6 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     made->context = context;
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
     camber_status status = check_bounds(made, &full);
-    if (status == CAMBER_OK)
-        status = camber_check_drivers(context);
     if (status == CAMBER_OK)
         status = choose_device(made, &full, &found);
     made->backend = found.backend;

@@ -3,6 +3,7 @@
  * Main idea: drivers set themselves up when they are first called. This must happen once, under a lock, and not in a
  * child that was forked afterwards. */
 #include "gpu/backend.h"
+#include "gpu/hardware.h"
 
 #include <ctype.h>
 #include <pthread.h>
@@ -38,42 +39,6 @@ camber_status camber_check_process(camber_context *context) {
         "before camber's first call, or start a new process (exec)");
 }
 
-size_t camber_find_devices(camber_found_device found[CAMBER_DEVICES_MAX], camber_failed_call *failed) {
-    size_t count = 0;
-    *failed = (camber_failed_call){0};
-    pthread_mutex_lock(&asking);
-    atomic_store(&process_of_drivers, getpid());
-    for (size_t i = 0; i < BACKENDS; i++)
-        count += backends[i]->find(found + count, CAMBER_DEVICES_MAX - count, failed);
-    pthread_mutex_unlock(&asking);
-    return count;
-}
-
-camber_status camber_check_drivers(camber_context *context) {
-    camber_status status = camber_check_process(context);
-    if (status == CAMBER_OK)
-        status = camber_budget_check_drivers(context);
-    for (size_t i = 0; i < BACKENDS && status == CAMBER_OK && atomic_load(&process_of_drivers) == 0; i++)
-        status = backends[i]->check_process(context);
-    return status;
-}
-
-static camber_status list_devices(camber_context *context) {
-    camber_found_device found[CAMBER_DEVICES_MAX];
-    camber_failed_call failed;
-    const camber_status status = camber_check_drivers(context);
-    if (status != CAMBER_OK)
-        return status;
-    const size_t count = camber_find_devices(found, &failed);
-    context->devices = camber_alloc(context, count, sizeof *context->devices);
-    if (!context->devices)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < count; i++)
-        context->devices[i] = found[i].info;
-    context->device_count = count;
-    return CAMBER_OK;
-}
-
 static bool contains_ignoring_case(const char *text, const char *part) {
     for (; *text; text++) {
         size_t i = 0;
@@ -94,6 +59,64 @@ bool camber_device_matches(const camber_device_info *info, const char *match) {
         return info->type == CAMBER_DEVICE_TYPE_GPU;
     return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match) ||
            contains_ignoring_case(info->version, match);
+}
+
+/* Whether the devices found so far have the one that the desc wants, so that no driver has to be asked. Without a word
+ * a GPU is wanted, if there is one. */
+static bool is_enough(const camber_device_desc *desc, const camber_found_devices *found) {
+    if (!desc || found->count == 0 || desc->number || desc->work_group_size || desc->lanes)
+        return false;
+    return desc->match ? camber_device_matches(&found->list[0].info, desc->match) : !camber_hardware_is_here();
+}
+
+/* Checks whether drivers can be asked for the first time. */
+static camber_status check_drivers(camber_context *context, const camber_gpu_backend *backend) {
+    static atomic_bool were_asked; /* by the lock */
+    if (atomic_exchange(&were_asked, true))
+        return CAMBER_OK;
+    camber_status status = camber_budget_check_drivers(context);
+    if (status == CAMBER_OK)
+        status = backend->check_process(context);
+    if (status != CAMBER_OK)
+        atomic_store(&were_asked, false);
+    return status;
+}
+
+camber_status camber_find_devices(camber_context *context, const camber_device_desc *desc,
+                                  camber_found_devices *found) {
+    camber_status status = camber_check_process(context);
+    found->count = 0;
+    found->failed = (camber_failed_call){0};
+    if (status != CAMBER_OK)
+        return status;
+    pthread_mutex_lock(&asking);
+    for (size_t i = 0; i < BACKENDS && status == CAMBER_OK; i++) {
+        if (backends[i]->has_drivers && is_enough(desc, found))
+            break;
+        if (backends[i]->has_drivers)
+            status = check_drivers(context, backends[i]);
+        if (status != CAMBER_OK)
+            break;
+        atomic_store(&process_of_drivers, getpid());
+        found->count +=
+            backends[i]->find(found->list + found->count, CAMBER_DEVICES_MAX - found->count, &found->failed);
+    }
+    pthread_mutex_unlock(&asking);
+    return status;
+}
+
+static camber_status list_devices(camber_context *context) {
+    camber_found_devices found;
+    const camber_status status = camber_find_devices(context, NULL, &found);
+    if (status != CAMBER_OK)
+        return status;
+    context->devices = camber_alloc(context, found.count, sizeof *context->devices);
+    if (!context->devices)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < found.count; i++)
+        context->devices[i] = found.list[i].info;
+    context->device_count = found.count;
+    return CAMBER_OK;
 }
 
 camber_status camber_device_list(camber_context *context, const char *match, size_t n,

@@ -3,6 +3,7 @@
 #include "core.h"
 
 #include "gpu/cpu/pool.h"
+#include "gpu/hardware.h"
 
 #include <errno.h>
 #include <fenv.h>
@@ -119,6 +120,31 @@ static camber_status draw_on(camber_context *context, const camber_device_desc *
     return status;
 }
 
+static bool is_loaded(const char *library) {
+    char line[1024];
+    bool found = false;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    assert_non_null(maps);
+    while (!found && fgets(line, sizeof line, maps))
+        found = strstr(line, library) != NULL;
+    fclose(maps);
+    return found;
+}
+
+/* Runs first: no other test has asked a driver yet. */
+static void test_no_driver(void **state) {
+    (void)state;
+    static const char *const words[] = {NULL, "cpu", "camber"};
+    static uint8_t rgba[PICTURE_BYTES];
+    host h;
+    camber_context *context = host_context(&h);
+    for (size_t i = camber_hardware_is_here(); i < sizeof words / sizeof *words; i++)
+        assert_int_equal(draw_on(context, &(camber_device_desc){.match = words[i]}, rgba), CAMBER_OK);
+    assert_false(is_loaded("libpocl"));
+    assert_false(is_loaded("libLLVM"));
+    host_done(&h, context);
+}
+
 /* Draws on a level, or, if level is NULL, in OpenCL. Returns whether it is here. */
 static bool draw_level(const char *level, uint32_t threads, uint8_t *rgba) {
     host h;
@@ -193,7 +219,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pool), cmocka_unit_test(test_levels),
-                                       cmocka_unit_test(test_fixed_kernels), cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver), cmocka_unit_test(test_pool),
+                                       cmocka_unit_test(test_levels), cmocka_unit_test(test_fixed_kernels),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

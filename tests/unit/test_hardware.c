@@ -1,7 +1,7 @@
 /* Signs of GL hardware, before GL is opened. */
 #include "core.h"
 
-#include "gl/surface.h"
+#include "gpu/hardware.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

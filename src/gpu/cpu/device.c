@@ -59,11 +59,6 @@ static size_t find(camber_found_device *found, size_t capacity, camber_failed_ca
     return 1;
 }
 
-static camber_status check_process(camber_context *context) {
-    (void)context;
-    return CAMBER_OK;
-}
-
 static camber_status fail(camber_context *context, const camber_failed_call *failed) {
     return camber_fail(context, CAMBER_ERROR_DEVICE, "%s fails; try another device", failed->name);
 }
@@ -252,7 +247,6 @@ static double end_event(camber_event *event) {
 
 const camber_gpu_backend camber_cpu = {
     .counts_memory = true,
-    .check_process = check_process,
     .find = find,
     .fail = fail,
     .open = open_device,

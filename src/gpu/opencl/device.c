@@ -185,6 +185,7 @@ static camber_status fail_found(camber_context *context, const camber_failed_cal
 }
 
 const camber_gpu_backend camber_opencl = {
+    .has_drivers = true,
     .check_process = camber_pocl_check_threads,
     .find = find,
     .fail = fail_found,

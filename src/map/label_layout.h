@@ -40,9 +40,10 @@ typedef struct camber_label_run {
 /* The texts and the icon that a layer's labels of a class show. */
 typedef struct camber_label_form {
     uint32_t rule;
-    uint32_t first_run;    /* of the text */
-    camber_text *text;     /* NULL: none */
-    camber_text *vertical; /* the same text, written downwards. NULL: none */
+    uint32_t first_run, run_count; /* of the text */
+    camber_text *text;             /* NULL: none */
+    camber_text *vertical;         /* the same text, written downwards. NULL: none */
+    const char *words;             /* what the text was shaped from (label_text.c). NULL: there is no text */
     const camber_sprite_image *icon;
     double sort_key;
     double weight; /* of two labels with equal sort keys, the lighter is placed first */
@@ -113,6 +114,9 @@ camber_status camber_label_form_make(camber_label_layout *layout, const camber_l
 /* Shapes a form's texts, or takes them from the table if they were shaped before. */
 camber_status camber_label_text_make(camber_label_layout *layout, const camber_symbol *symbol, camber_label_form *form);
 void camber_label_words_free(camber_label_layout *layout);
+/* Returns the characters of a run of a form's text, and moves *at to the next run. *at is the form's words at first. An
+ * image has none. */
+const char *camber_label_run_words(const char **at, bool is_first);
 /* Finds an image. NULL: it is missing, and a warning says so. */
 const camber_sprite_image *camber_label_find_image(const camber_label_layout *layout, const char *name);
 

@@ -25,6 +25,7 @@ struct camber_label_words {
     size_t run_capacity;
 };
 
+enum { DESC_NUMBERS = 6, RUN_NUMBERS = 6 }; /* of a key */
 /* The most memory for keys. */
 #define KEY_LIMIT ((size_t)256 << 20)
 
@@ -66,18 +67,19 @@ static bool put_text(camber_context *context, struct camber_label_words *words, 
 
 /* Writes a text's key: everything that the text depends on. */
 static bool write_key(camber_context *context, struct camber_label_words *words, const camber_text_desc *desc) {
-    const double lengths[] = {(double)desc->max_width_em,
-                              (double)desc->line_height_em,
-                              (double)desc->letter_spacing_em,
-                              desc->anchor,
-                              desc->justify,
-                              desc->vertical};
+    const double lengths[DESC_NUMBERS] = {(double)desc->max_width_em,
+                                          (double)desc->line_height_em,
+                                          (double)desc->letter_spacing_em,
+                                          desc->anchor,
+                                          desc->justify,
+                                          desc->vertical};
     words->key_size = 0;
     bool written = put(context, words, lengths, sizeof lengths);
     for (size_t i = 0; i < desc->run_count && written; i++) {
         const camber_text_run *run = desc->runs + i;
-        const double numbers[] = {(double)run->scale, (double)run->image_width_em, (double)run->image_height_em,
-                                  run->align,         run->text ? 1.0 : 0.0,       (double)run->font_count};
+        const double numbers[RUN_NUMBERS] = {(double)run->scale,           (double)run->image_width_em,
+                                             (double)run->image_height_em, run->align,
+                                             run->text ? 1.0 : 0.0,        (double)run->font_count};
         written = put(context, words, numbers, sizeof numbers) && put_text(context, words, run->text);
         for (size_t f = 0; f < run->font_count && written; f++)
             written = put_text(context, words, run->fonts[f]);
@@ -114,8 +116,22 @@ static bool widen(camber_context *context, struct camber_label_words *words) {
     return true;
 }
 
-/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. */
-static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text) {
+/* Reads what write_key has written. */
+const char *camber_label_run_words(const char **at, bool is_first) {
+    double numbers[RUN_NUMBERS];
+    const char *run = *at + (is_first ? DESC_NUMBERS * sizeof(double) : 0);
+    memcpy(numbers, run, sizeof numbers);
+    const char *said = run + sizeof numbers, *next = said + strlen(said) + 1;
+    for (size_t i = 0; i < (size_t)numbers[RUN_NUMBERS - 1]; i++)
+        next += strlen(next) + 1;
+    *at = next;
+    return said;
+}
+
+/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. *made_from is what it was
+ * made from. */
+static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text,
+                           const char **made_from) {
     camber_context *context = layout->context;
     struct camber_label_words *words = layout->words;
     if (!write_key(context, words, desc) || !widen(context, words))
@@ -134,6 +150,7 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
         *slot = (uint32_t)words->count;
     }
     *text = words->items[*slot - 1].text;
+    *made_from = words->items[*slot - 1].key;
     if ((*text)->glyph_count == 0)
         *text = NULL;
     return CAMBER_OK;
@@ -235,7 +252,7 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
                              .letter_spacing_em = (float)symbol->letter_spacing_em,
                              .anchor = rule->variable ? CAMBER_ANCHOR_CENTER : symbol->text_anchor,
                              .justify = rule->text_along ? CAMBER_JUSTIFY_CENTER : symbol->justify};
-    camber_status status = shape(layout, &desc, &form->text);
+    camber_status status = shape(layout, &desc, &form->text, &form->words);
     if (status != CAMBER_OK || !form->text)
         return status;
     hash_words(symbol, form);
@@ -248,5 +265,5 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
         desc.justify = CAMBER_JUSTIFY_LEFT;
         desc.anchor = turn_anchor(desc.anchor);
     }
-    return shape(layout, &desc, &form->vertical);
+    return shape(layout, &desc, &form->vertical, &form->words);
 }

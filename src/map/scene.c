@@ -26,8 +26,8 @@ struct camber_scene {
     camber_view view;
     camber_plan_network geometry;
     camber_pass_list pair_passes;
-    camber_label_shapes labels; /* of the picture */
-    size_t label_count;
+    camber_labels placed;       /* in the picture */
+    camber_label_shapes labels; /* their shapes */
 
     /* On the host: empty until camber_scene_project. */
     bool is_projected;
@@ -156,14 +156,12 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
 /* Places the labels of the view and makes their shapes, if fonts were read with the features. */
 static camber_status make_labels(camber_scene *scene) {
     const camber_features *features = scene->zoom->features;
-    camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
-    camber_status status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+    camber_status status =
+        camber_labels_place(features, &scene->view, features->fonts, features->sprites, &scene->placed);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, &scene->view, features->fonts, &scene->labels);
-    scene->label_count = labels.label_count;
-    camber_labels_free(&labels);
+        status = camber_label_shapes_make(&scene->placed, &scene->view, features->fonts, &scene->labels);
     return status;
 }
 
@@ -193,6 +191,8 @@ static void release_contents(camber_scene *scene) {
     release_projection(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
     camber_label_shapes_free(&scene->labels);
+    if (scene->placed.context)
+        camber_labels_free(&scene->placed);
     camber_plan_network_destroy(&scene->geometry);
     camber_zoom_plan_destroy(scene->own);
 }
@@ -217,7 +217,7 @@ static camber_status warn_if_nothing_is_drawn(const camber_scene *scene) {
         return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: no layer draws %zu of the %zu features", undrawn, all);
-    if (!undrawn || undrawn < all || scene->label_count)
+    if (!undrawn || undrawn < all || scene->placed.label_count)
         return CAMBER_OK;
     const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
     if (status == CAMBER_OK)
@@ -347,6 +347,15 @@ void camber_scene_destroy(camber_scene *scene) {
 
 /* ---- Getters ---- */
 
+camber_scene_parts camber_scene_get_parts(camber_scene *scene) {
+    return (camber_scene_parts){.zoom = scene->zoom,
+                                .view = &scene->view,
+                                .geometry = &scene->geometry,
+                                .passes = &scene->pair_passes,
+                                .labels = &scene->placed,
+                                .shapes = &scene->labels};
+}
+
 camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     camber_scene_info info = {.zoom = scene->view.zoom,
                               .bearing_deg = scene->view.bearing_deg,
@@ -361,7 +370,7 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     info.polylines = scene->counts.polylines;
     info.points = scene->counts.points;
     info.points_in = scene->counts.points_in;
-    info.labels = scene->label_count;
+    info.labels = scene->placed.label_count;
     return info;
 }
 

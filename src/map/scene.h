@@ -13,7 +13,7 @@
 camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene);
 
-/* What a scene is drawn from, for pages (print/). Passes are over the entries of the network: their paints are indexed
+/* The parts that a scene is drawn from, for pages (print/). Passes are over the entries of the network: their paints are indexed
  * by the entries' rows. All of it is valid until the scene moves. */
 typedef struct camber_scene_parts {
     const camber_zoom_plan *zoom;

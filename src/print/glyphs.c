@@ -262,8 +262,8 @@ camber_status camber_page_show(camber_page_fonts *f, cairo_t *cr, const camber_p
             break;
         const size_t clusters = make_clusters(f, run, &s, &first_byte, &end_byte);
         const char *text = run->text + first_byte;
-        const size_t size = end_byte > first_byte ? end_byte - first_byte : 0;
-        bool whole = size > 0 && size <= INT32_MAX && is_text(text, size);
+        const size_t size = end_byte - first_byte;
+        bool whole = size <= INT32_MAX && is_text(text, size);
         for (size_t k = 0, at = 0; k < clusters && whole; at += (size_t)f->clusters[k++].num_bytes)
             whole = is_text(text + at, (size_t)f->clusters[k].num_bytes);
         if (whole)

@@ -142,10 +142,25 @@ static bool is_alike(const camber_label_item *a, const camber_label_item *b) {
     return a->xx == b->xx && a->xy == b->xy && a->yx == b->yx && a->yy == b->yy && a->look == b->look;
 }
 
+/* Gives all characters of a label to its first glyph: readers take slanted letters for words of their own. */
+static void join_characters(camber_page_map *map, size_t first, size_t end) {
+    const camber_labels *labels = map->parts.labels;
+    const camber_label *label = labels->labels + labels->items[first].label;
+    const uint32_t stop = label->first_byte + label->byte_count;
+    for (size_t i = 0; i < end - first; i++)
+        map->glyphs[i].first_byte = map->glyphs[i].end_byte = stop;
+    map->glyphs[0].first_byte = label->first_byte;
+}
+
 /* Draws the glyphs of a label, or adds their outlines to the path. */
 static camber_status draw_glyphs(camber_page_map *map, size_t first, size_t end, bool outlines) {
     const camber_label_item *items = map->parts.labels->items;
     camber_status status = find_characters(map, first, end);
+    bool level = items[first].yx == 0.0f;
+    for (size_t i = first + 1; i < end; i++)
+        level = level && is_alike(items + first, items + i);
+    if (status == CAMBER_OK && !level)
+        join_characters(map, first, end);
     for (size_t i = first, next; i < end && status == CAMBER_OK; i = next) {
         for (next = i + 1; next < end && is_alike(items + i, items + next);)
             next++;

@@ -128,7 +128,7 @@ static void to_sheet(const marginalia *m, double x, double y, double px[2]) {
 }
 
 /* Draws a line of the grid between two points of the world, and its label where the line leaves the map: a meridian at
- * the bottom, a parallel on the left. */
+ * the top, a parallel on the left. */
 static camber_status draw_grid_line(const marginalia *m, const double ends[4], const char *label, bool meridian) {
     double a[2], b[2];
     to_sheet(m, ends[0], ends[1], a);
@@ -139,7 +139,7 @@ static camber_status draw_grid_line(const marginalia *m, const double ends[4], c
     cairo_line_to(m->cr, b[0], b[1]);
     cairo_stroke(m->cr);
     const int along = meridian ? 1 : 0, across = !along;
-    const double edge = meridian ? m->y1 : m->x0, step = b[along] - a[along];
+    const double edge = meridian ? m->y0 : m->x0, step = b[along] - a[along];
     const double t = step != 0.0 ? (edge - a[along]) / step : -1.0;
     const double at = a[across] + t * (b[across] - a[across]);
     const double low = meridian ? m->x0 : m->y0, high = meridian ? m->x1 : m->y1;
@@ -149,8 +149,8 @@ static camber_status draw_grid_line(const marginalia *m, const double ends[4], c
     const words w = {label,
                      REGULAR,
                      meridian ? at : edge + gap,
-                     meridian ? edge - gap : at,
-                     meridian ? CAMBER_ANCHOR_BOTTOM : CAMBER_ANCHOR_LEFT,
+                     meridian ? edge + gap : at,
+                     meridian ? CAMBER_ANCHOR_TOP : CAMBER_ANCHOR_LEFT,
                      0.8 * m->text_px,
                      0.0,
                      true};

@@ -43,7 +43,7 @@ typedef struct camber_page_fonts {
 /* A glyph, and its characters in a text. */
 typedef struct camber_page_glyph {
     uint32_t glyph;
-    uint32_t first_byte, end_byte; /* equal: no character is only its own */
+    uint32_t first_byte, end_byte; /* equal: its characters belong to another glyph */
     double x, y;                   /* device px */
 } camber_page_glyph;
 
@@ -100,7 +100,12 @@ camber_status camber_page_lines_add_part(camber_page_lines *lines, const camber_
 camber_status camber_page_lines_offset(camber_page_lines *lines, const camber_stroke *stroke, float offset_px,
                                        camber_page_lines *beside);
 
-/* ---- The map (passes.c, labels.c) ---- */
+/* ---- The map (passes.c, labels.c, images.c) ---- */
+
+/* Converts a pixel of camber's to Cairo's. */
+static inline uint32_t camber_page_argb(const uint8_t *rgba) {
+    return (uint32_t)rgba[3] << 24 | (uint32_t)rgba[0] << 16 | (uint32_t)rgba[1] << 8 | (uint32_t)rgba[2];
+}
 
 /* The drawing of a map. */
 typedef struct camber_page_map {

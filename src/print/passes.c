@@ -22,36 +22,6 @@ static void set_color(cairo_t *cr, camber_color c, double alpha) {
     cairo_set_source_rgba(cr, (double)c.r, (double)c.g, (double)c.b, alpha);
 }
 
-/* ---- Images ---- */
-
-cairo_surface_t *camber_page_image(camber_page_map *map, const camber_image *image) {
-    for (size_t i = 0; i < map->image_count; i++)
-        if (map->images[i].key == image->rgba)
-            return map->images[i].surface;
-    if (!camber_grow(map->context, &map->images, &map->image_capacity, map->image_count + 1, sizeof *map->images))
-        return NULL;
-    cairo_surface_t *made = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, (int)image->width, (int)image->height);
-    if (cairo_surface_status(made) != CAIRO_STATUS_SUCCESS) {
-        cairo_surface_destroy(made);
-        return NULL;
-    }
-    cairo_surface_flush(made);
-    const size_t stride = image->stride_bytes ? image->stride_bytes : (size_t)4 * image->width;
-    uint8_t *to = cairo_image_surface_get_data(made);
-    const size_t to_stride = (size_t)cairo_image_surface_get_stride(made);
-    for (uint32_t y = 0; y < image->height; y++)
-        for (uint32_t x = 0; x < image->width; x++) {
-            const uint8_t *from = image->rgba + y * stride + 4 * (size_t)x;
-            const uint32_t argb =
-                (uint32_t)from[3] << 24 | (uint32_t)from[0] << 16 | (uint32_t)from[1] << 8 | (uint32_t)from[2];
-            memcpy(to + y * to_stride + 4 * (size_t)x, &argb, sizeof argb);
-        }
-    cairo_surface_mark_dirty(made);
-    map->images[map->image_count].key = image->rgba;
-    map->images[map->image_count++].surface = made;
-    return made;
-}
-
 /* ---- Fills ---- */
 
 /* Sets the fill's repeated image as the source. */
@@ -119,7 +89,7 @@ static void add_line(cairo_t *cr, const camber_page_lines *l, size_t line) {
         cairo_close_path(cr);
 }
 
-/* What a group of lines is drawn with. */
+/* The look of a group of lines. */
 typedef struct stroke_look {
     const camber_stroke *stroke;
     const camber_paint *paint;
@@ -556,18 +526,6 @@ camber_status camber_page_draw_map(camber_page_map *map) {
             status = camber_fail(map->context, CAMBER_ERROR_MEMORY, "page: Cairo has no memory left");
     }
     return status;
-}
-
-void camber_page_map_free(camber_page_map *map) {
-    for (size_t i = 0; i < map->image_count; i++)
-        cairo_surface_destroy(map->images[i].surface);
-    camber_free(map->context, map->images);
-    camber_free(map->context, map->glyphs);
-    camber_free(map->context, map->bytes);
-    camber_page_lines_free(&map->lines);
-    camber_page_lines_free(&map->beside);
-    camber_page_lines_free(&map->part);
-    camber_page_fonts_free(&map->fonts);
 }
 
 #endif

@@ -14,87 +14,6 @@
 
 static const double POINTS_PER_INCH = 72.0, POINTS_PER_MM = 72.0 / 25.4;
 
-/* ---- Layers as images ---- */
-
-/* A picture of some passes, in Cairo's order of bytes. */
-typedef struct layer_image {
-    uint8_t *argb;
-    uint32_t width;
-    uint32_t x0, y0, x1, y1; /* the part that is not empty */
-} layer_image;
-
-static uint32_t argb_of(const uint8_t *rgba) {
-    return (uint32_t)rgba[3] << 24 | (uint32_t)rgba[0] << 16 | (uint32_t)rgba[1] << 8 | (uint32_t)rgba[2];
-}
-
-static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    layer_image *image = user;
-    for (uint32_t y = first_row; y < first_row + row_count; y++)
-        for (uint32_t x = 0; x < image->width; x++, rgba += 4) {
-            const uint32_t argb = argb_of(rgba);
-            memcpy(image->argb + 4 * ((size_t)y * image->width + x), &argb, sizeof argb);
-            if (!argb)
-                continue;
-            image->x0 = x < image->x0 ? x : image->x0;
-            image->x1 = x >= image->x1 ? x + 1 : image->x1;
-            image->y0 = y < image->y0 ? y : image->y0;
-            image->y1 = y + 1;
-        }
-    return true;
-}
-
-static camber_status paint_image(camber_page_map *map, const layer_image *image) {
-    if (image->x0 >= image->x1)
-        return CAMBER_OK;
-    cairo_surface_t *surface = cairo_image_surface_create_for_data(
-        image->argb + 4 * ((size_t)image->y0 * image->width + image->x0), CAIRO_FORMAT_ARGB32,
-        (int)(image->x1 - image->x0), (int)(image->y1 - image->y0), (int)(4 * image->width));
-    cairo_set_source_surface(map->cr, surface, image->x0, image->y0);
-    cairo_pattern_set_filter(cairo_get_source(map->cr), CAIRO_FILTER_NEAREST);
-    cairo_paint(map->cr);
-    cairo_set_source_rgb(map->cr, 0.0, 0.0, 0.0);
-    cairo_surface_finish(surface); /* what Cairo has recorded becomes a copy */
-    cairo_surface_destroy(surface);
-    return CAMBER_OK;
-}
-
-static void tell(camber_page_map *map) {
-    bool *told = map->renderer ? &map->told_images : &map->told_left_out;
-    if (!*told)
-        camber_log(map->context, CAMBER_LOG_WARNING,
-                   map->frame.pitch_deg > 0.0 ? "page: a view with a pitch is %s"
-                                              : "page: lines with a blur or a pattern are %s",
-                   map->renderer ? "drawn as an image" : "left out, because there is no renderer to draw them");
-    *told = true;
-}
-
-camber_status camber_page_draw_image(camber_page_map *map, size_t first_pass, size_t pass_count) {
-    tell(map);
-    if (!map->renderer)
-        return CAMBER_OK;
-    const uint32_t width = map->parts.view->width, height = map->parts.view->height;
-    camber_status status = CAMBER_OK;
-    if (!map->is_tessellated)
-        status = camber_scene_tessellate(map->scene, map->mesh, CAMBER_METHOD_STRIP);
-    if (status != CAMBER_OK)
-        return status;
-    map->is_tessellated = true;
-    camber_frame frame = camber_scene_get_frame(map->scene, map->mesh);
-    if (!(frame.pitch_deg > 0.0))
-        frame.background = (camber_color){0};
-    frame.passes += first_pass;
-    frame.pass_count = pass_count;
-    layer_image image = {.width = width, .x0 = width, .y0 = height};
-    image.argb = camber_alloc(map->context, (size_t)width * height, 4);
-    if (!image.argb)
-        return CAMBER_ERROR_MEMORY;
-    status = camber_renderer_render(map->renderer, &frame, take_rows, &image, NULL);
-    if (status == CAMBER_OK)
-        status = paint_image(map, &image);
-    camber_free(map->context, image.argb);
-    return status;
-}
-
 /* ---- Vectors ---- */
 
 typedef struct stream {
@@ -143,6 +62,11 @@ static camber_status draw_page(camber_page *page, camber_page_map *map, const ca
     const camber_page_info *info = &page->info;
     cairo_t *cr = map->cr;
     camber_page_fonts own = {.context = page->context, .fonts = page->fonts, .as_paths = map->fonts.as_paths};
+    /* Only a PDF has a white sheet of its own. */
+    if (map->fonts.as_paths && (page->desc.margin_mm > 0.0 || page->desc.title || page->desc.subtitle)) {
+        cairo_set_source_rgb(cr, 1.0, 1.0, 1.0);
+        cairo_paint(cr);
+    }
     cairo_scale(cr, POINTS_PER_INCH / info->dpi, POINTS_PER_INCH / info->dpi);
     set_font_options(cr);
     cairo_save(cr);
@@ -281,7 +205,7 @@ static void put_row(const sheet *s, const uint8_t *rgba, uint8_t *row) {
         const uint8_t paper = (uint8_t)(255 - rgba[3]);
         const uint8_t over[4] = {(uint8_t)(rgba[0] + paper), (uint8_t)(rgba[1] + paper), (uint8_t)(rgba[2] + paper),
                                  255};
-        const uint32_t argb = argb_of(over);
+        const uint32_t argb = camber_page_argb(over);
         memcpy(row, &argb, sizeof argb);
     }
 }

@@ -17,6 +17,8 @@ enum { LINES_OF_A_PATH = 4096 };
 static const double RAMP_STEP = 1.0 / 64.0, RAMP_LEAST_PX = 1.0, RAMP_OVERLAP_PX = 0.5;
 /* Beyond the reach of a stroke, lines are kept this far, as in the picture. */
 static const double MARGIN_PX = 64.0;
+/* This is more than Cairo's own steps of 1/256 point at any resolution that is worth printing. */
+static const double PAST_PX = 0.1;
 
 static void set_color(cairo_t *cr, camber_color c, double alpha) {
     cairo_set_source_rgba(cr, (double)c.r, (double)c.g, (double)c.b, alpha);
@@ -77,15 +79,20 @@ static camber_status fill_path(camber_page_map *map, const camber_fill *fill, do
 
 /* ---- Strokes ---- */
 
-static void add_line(cairo_t *cr, const camber_page_lines *l, size_t line) {
+/* Adds a line to the path. dashed: a ring of four corners ends a little past its beginning, because Cairo writes
+ * rectangles as such, and their dashes would begin at another corner. */
+static void add_line(cairo_t *cr, const camber_page_lines *l, size_t line, bool dashed) {
     const float *p = l->points + 2 * (size_t)l->offsets[line];
     size_t count = l->offsets[line + 1] - l->offsets[line];
-    if (l->closed[line] && count > 1 && p[0] == p[2 * count - 2] && p[1] == p[2 * count - 1])
+    const bool closed = l->closed[line] && !dashed;
+    if (closed && count > 1 && p[0] == p[2 * count - 2] && p[1] == p[2 * count - 1])
         count--;
     cairo_move_to(cr, (double)p[0], (double)p[1]);
     for (size_t i = 1; i < count; i++)
         cairo_line_to(cr, (double)p[2 * i], (double)p[2 * i + 1]);
-    if (l->closed[line] || count == 1) /* a closed point is a dot */
+    if (!closed && l->closed[line] && count == 5)
+        cairo_rel_line_to(cr, copysign(PAST_PX, (double)(p[8] - p[6])), copysign(PAST_PX, (double)(p[9] - p[7])));
+    if (closed || count == 1) /* a closed point is a dot */
         cairo_close_path(cr);
 }
 
@@ -132,7 +139,7 @@ static void draw_lines(camber_page_map *map, const camber_page_lines *l, const s
     set_stroke(cr, look);
     cairo_new_path(cr);
     for (size_t i = 0; i < l->count; i++) {
-        add_line(cr, l, i);
+        add_line(cr, l, i, look->paint->dash != NULL);
         if (look->paint->dash) {
             set_dash(cr, look->paint, (double)l->arcs[2 * i]);
             cairo_stroke(cr);
@@ -377,7 +384,7 @@ static camber_status draw_areas(camber_page_map *map, const camber_pass *pass, s
     cairo_new_path(map->cr);
     cairo_translate(map->cr, (double)paint->translate_x_px, (double)paint->translate_y_px);
     for (size_t i = 0; i < map->lines.count; i++)
-        add_line(map->cr, &map->lines, i);
+        add_line(map->cr, &map->lines, i, false);
     cairo_translate(map->cr, -(double)paint->translate_x_px, -(double)paint->translate_y_px);
     status = fill_path(map, paint->fill, 1.0, false);
     cairo_restore(map->cr);

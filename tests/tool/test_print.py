@@ -178,7 +178,7 @@ def draw_style(style, name):
     path, out = os.path.join(FOLDER, "style.json"), os.path.join(FOLDER, name)
     with open(path, "w", encoding="utf-8") as file:
         json.dump(style, file)
-    done = run("render", "--style", path, "-o", out, "-f", "--center", "0.004,0.005", "--zoom", "15", "--size", "300x440")
+    done = run("render", "--style", path, "-o", out, "-f", "--center", "0.004,0.005", "--zoom", "15", "--size", "300x440", "--dpi", "96")
     return out, done.stderr
 
 

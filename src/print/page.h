@@ -61,7 +61,7 @@ camber_status camber_page_show(camber_page_fonts *fonts, cairo_t *cr, const camb
 /* Adds their outlines to the current path. */
 camber_status camber_page_add_outlines(camber_page_fonts *fonts, cairo_t *cr, const camber_page_run *run);
 
-/* ---- What is drawn around the map (marginalia.c) ---- */
+/* ---- Marginalia (marginalia.c) ---- */
 
 /* Draws title, grid, scale bar, north arrow, credit and the map's frame. */
 camber_status camber_page_draw_marginalia(const camber_page *page, const camber_scene_parts *parts,

@@ -154,7 +154,7 @@ if have("rsvg-convert"):
     mean, far = difference(png, drawn)
     expect(mean < 0.6 and far < 0.002, f"an SVG with labels differs by {mean:.3f} levels, and far in {far:.5f}")
 
-# ---- What a page cannot say, and dashes, gaps, patterns ----
+# ---- Dashes, gaps, offsets; a blur, which a page cannot say ----
 
 STYLE = {"version": 8, "sources": {"roads": {"type": "geojson", "data": "roads.geojson"}}, "layers": [
     {"id": "paper", "type": "background", "paint": {"background-color": "#fff"}},

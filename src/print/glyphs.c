@@ -79,9 +79,10 @@ static cairo_status_t draw_glyph(cairo_scaled_font_t *scaled, unsigned long glyp
                                  cairo_text_extents_t *extents) {
     camber_fonts *fonts = cairo_font_face_get_user_data(cairo_scaled_font_get_font_face(scaled), &outlines_key);
     camber_outline outline;
-    extents->x_advance = 0.0;
     if (!fonts || camber_fonts_get_outline(fonts, (uint32_t)glyph, TOLERANCE_EM, &outline) != CAMBER_OK)
         return CAIRO_STATUS_USER_FONT_ERROR;
+    /* Readers find words by advances; each glyph has a place of its own anyway. */
+    extents->x_advance = outline.ring_count ? fmax((double)outline.right, 0.0) : 0.25;
     add_outline(cr, &outline);
     cairo_fill(cr);
     return CAIRO_STATUS_SUCCESS;

@@ -13,8 +13,9 @@
 static const double PI = 3.14159265358979323846;
 /* Opaque strokes are drawn in paths of so many lines, so that readers need not keep a whole city's. */
 enum { LINES_OF_A_PATH = 4096 };
-/* A gradient is drawn in pieces that differ by this in a channel, and are at least this long. */
-static const double RAMP_STEP = 1.0 / 64.0, RAMP_LEAST_PX = 1.0, RAMP_OVERLAP_PX = 0.5;
+/* A gradient is drawn in pieces that differ by this in a channel, and are at least this long. Opaque pieces reach back
+ * over the one before, so that no seam shows. */
+static const double RAMP_STEP = 1.0 / 64.0, RAMP_LEAST_PX = 2.0, RAMP_OVERLAP_PX = 1.5;
 /* Beyond the reach of a stroke, lines are kept this far, as in the picture. */
 static const double MARGIN_PX = 64.0;
 /* This is more than Cairo's own steps of 1/256 point at any resolution that is worth printing. */

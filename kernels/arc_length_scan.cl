@@ -4,10 +4,11 @@
  * A work-item takes a chunk of CAMBER_ARC_LENGTH_CHUNK slots; the host turns arc_length_sum's sums into the carries. */
 #include "arc_length.h"
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_scan(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_u64 *restrict carries, global float *restrict arc_lengths) {
-    const size_t chunk = get_global_id(0), first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
+CAMBER_KERNEL(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, arc_length_scan,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global const camber_u64 *restrict carries, global float *restrict arc_lengths),
+              (x, y, info, carries, arc_lengths)) {
+    const size_t chunk = CAMBER_WORK_ITEM, first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
     camber_u64 along[CAMBER_ARC_LENGTH_CHUNK];
     camber_u64 sum = carries[2 * chunk];
     for (size_t k = 0; k < CAMBER_ARC_LENGTH_CHUNK; k++) {

@@ -5,10 +5,11 @@
  * chunk, and the lowest bit of the second says whether a line ends in it. */
 #include "arc_length.h"
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_sum(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global camber_u64 *restrict sums) {
-    const size_t chunk = get_global_id(0), first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
+CAMBER_KERNEL(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, arc_length_sum,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global camber_u64 *restrict sums),
+              (x, y, info, sums)) {
+    const size_t chunk = CAMBER_WORK_ITEM, first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
     camber_u64 ahead = 0, behind = 0;
     camber_u32 begins = 0, ends = 0;
     for (size_t i = first; i < first + CAMBER_ARC_LENGTH_CHUNK; i++) {

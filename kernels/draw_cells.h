@@ -197,7 +197,7 @@ CAMBER_FN void camber_put_images(camber_tile_state *c, const camber_drawn_segmen
         camber_image_spot spot = {x, y, 0.0f, 0.0f, 0.0f};
         float color[4];
 #if CAMBER_STROKE_PITCHED
-        camber_plane_spot(t->eye, x, y, &spot);
+        camber_plane_spot(camber_fill_eye(&t->image, t->eye), x, y, &spot);
 #endif
         camber_fill_image(&t->image, &spot, color);
         camber_tile_put_colors(c, one.number, i, areas ? areas[i] : 1.0f, color);

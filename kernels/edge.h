@@ -41,13 +41,16 @@ CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_flag linea
     camber_profile_of(x, y, linear, &edge->cuts);
 }
 
-/* Computes the coefficients from the words of the footprint (segment) and the words of the plane. */
+/* Computes the coefficients from the words of the footprint (segment) and the words of the plane, which has the cosine
+ * and the fall of its own camera. */
 CAMBER_FN void camber_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, CAMBER_GLOBAL const float *plane,
                               camber_u32 flags, camber_edge *p) {
     const float ax = plane[CAMBER_SEGMENT_AX], ay = plane[CAMBER_SEGMENT_AY], bx = plane[CAMBER_SEGMENT_BX];
     const float by = plane[CAMBER_SEGMENT_BY], nax = plane[CAMBER_SEGMENT_NAX], nay = plane[CAMBER_SEGMENT_NAY];
     const float nbx = plane[CAMBER_SEGMENT_NBX], nby = plane[CAMBER_SEGMENT_NBY], h = plane[CAMBER_SEGMENT_HALF_WIDTH];
     const camber_u32 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
+    e.cosine = plane[CAMBER_PLANE_COSINE];
+    e.fall = plane[CAMBER_PLANE_FALL];
     p->by_cosine = 1.0f / e.cosine;
     p->fall = e.fall;
     p->ux = plane[CAMBER_SEGMENT_UX];

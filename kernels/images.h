@@ -11,7 +11,7 @@
 /* An image's layout in the side table, four float4s:
  *     0-3    the first word of its texels, texels per row, rows (the bits of unsigned integers); px along a line
  *     4-7    for a fill: the position of a corner of an image, px; images per px to the right, along their x and y
- *     8-11   for a fill: images per px down, along their x and y; 0, 0
+ *     8-11   for a fill: images per px down, along their x and y; 1 if it is upright (camber_pass); 0
  *     12-15  the mean colour, 0 to 255
  * Texels are premultiplied RGBA8, one word each, from the top down, with a border of one texel around them. */
 #define CAMBER_IMAGE_WORDS 16u
@@ -24,6 +24,7 @@ CAMBER_STRUCT(camber_image_sampler) {
     float length, near;       /* the segment's length; how far from a join the image bends; in px */
     float tangent_a, tangent_b;
     float left, top, across_x, across_y, down_x, down_y; /* only for a fill: the image's layout, words 4 to 9 */
+    float upright;                                       /* its word 10 */
     float mean[4];
 #ifndef CAMBER_GLSL
     CAMBER_GLOBAL const float *side_table;
@@ -69,6 +70,7 @@ CAMBER_FN void camber_image_sampler_of(CAMBER_GLOBAL const float *side_table, ca
     m->across_y = side_table[at + 7u];
     m->down_x = side_table[at + 8u];
     m->down_y = side_table[at + 9u];
+    m->upright = side_table[at + 10u];
     for (camber_u32 k = 0; k < 4u; k++)
         m->mean[k] = side_table[at + 12u + k];
 }
@@ -157,6 +159,13 @@ CAMBER_FN void camber_line_spot(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel
     spot->reach_x = CAMBER_REAL(0.0f);
     spot->reach_y = CAMBER_REAL(0.0f);
 #endif
+}
+
+/* Returns the camera that sees a fill's images. */
+CAMBER_FN camber_eye camber_fill_eye(CAMBER_IN(camber_image_sampler) m, camber_eye e) {
+    if (m->upright > 0.0f)
+        return camber_eye_upright(e);
+    return e;
 }
 
 /* Returns the spot of a fill's pixel. x and y: its position relative to the picture's middle, in px. */

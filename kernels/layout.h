@@ -20,23 +20,25 @@
 #define CAMBER_POINT_CHUNK 8
 #endif
 
-/* Defines a kernel with work-groups of `size` work-items; its body has the number of its work-item in CAMBER_WORK_ITEM.
+/* Defines a kernel with work-groups of `size` work-items; its body has the number of its work-item in CAMBER_WORK_ITEM, and how many there are in CAMBER_WORK_ITEMS.
  * On a CPU the body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and
  * compiles its loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM
  * halves AVX-512's vectors unless a function asks for whole ones; processors without AVX-512 ignore it. */
-#ifdef CAMBER_DEVICE
+#if defined(CAMBER_DEVICE) && !defined(CAMBER_AHEAD_OF_TIME)
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define CAMBER_LIST(...) __VA_ARGS__ /* only for CPUs: NVIDIA's compiler does not know such a macro */
 #define CAMBER_WORK_ITEM item_id
+#define CAMBER_WORK_ITEMS item_count
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
-    static void name##_item(const size_t item_id, CAMBER_LIST parameters)                                              \
+    static void name##_item(const size_t item_id, const size_t item_count, CAMBER_LIST parameters)                     \
         __attribute__((noinline, min_vector_width(512)));                                                              \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters {                                    \
-        name##_item(get_global_id(0), CAMBER_LIST arguments);                                                          \
+        name##_item(get_global_id(0), get_global_size(0), CAMBER_LIST arguments);                                      \
     }                                                                                                                  \
-    static void name##_item(const size_t item_id, CAMBER_LIST parameters)
+    static void name##_item(const size_t item_id, const size_t item_count, CAMBER_LIST parameters)
 #else
 #define CAMBER_WORK_ITEM get_global_id(0)
+#define CAMBER_WORK_ITEMS get_global_size(0)
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters
 #endif

@@ -3,10 +3,11 @@
  * One work-item per slot. */
 #include "offset_clip.h"
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void offset_clip(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips) {
-    const camber_source_line source_line = {x, y, info, offset_rows, clips, 0, (camber_u32)get_global_size(0)};
-    const camber_u32 slot = (camber_u32)get_global_id(0) + 1u;
+CAMBER_KERNEL(CAMBER_BLOCK, offset_clip,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips),
+              (x, y, info, offset_rows, clips)) {
+    const camber_source_line source_line = {x, y, info, offset_rows, clips, 0, (camber_u32)CAMBER_WORK_ITEMS};
+    const camber_u32 slot = (camber_u32)CAMBER_WORK_ITEM + 1u;
     clips[slot] = camber_offset_clip_of(&source_line, slot);
 }

@@ -6,13 +6,16 @@
  * out_arc_lengths[2 * s]; else both are NULL. */
 #include "offset_emit.h"
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1, 1))) void offset_emit(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips,
-    global const camber_u32 *restrict bases, global float *restrict out_x, global float *restrict out_y,
-    global camber_u32 *restrict out_info, global camber_u32 *restrict joins, global camber_u32 *restrict places,
-    global const float *restrict arc_lengths, global float *restrict out_arc_lengths) {
-    const camber_u32 chunk = (camber_u32)get_global_id(0), chunks = (camber_u32)get_global_size(0);
+CAMBER_KERNEL(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, offset_emit,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips,
+               global const camber_u32 *restrict bases, global float *restrict out_x, global float *restrict out_y,
+               global camber_u32 *restrict out_info, global camber_u32 *restrict joins,
+               global camber_u32 *restrict places, global const float *restrict arc_lengths,
+               global float *restrict out_arc_lengths),
+              (x, y, info, offset_rows, clips, bases, out_x, out_y, out_info, joins, places, arc_lengths,
+               out_arc_lengths)) {
+    const camber_u32 chunk = (camber_u32)CAMBER_WORK_ITEM, chunks = (camber_u32)CAMBER_WORK_ITEMS;
     camber_source_line source_line = {x, y, info, offset_rows, clips, 0, chunks * CAMBER_OFFSET_CHUNK};
     camber_offset_writer writer = camber_offset_writer_counting();
     writer.x = out_x;

@@ -17,6 +17,13 @@ CAMBER_STRUCT(camber_eye) {
     float fall;   /* by how much depth falls per px of the plane towards the viewer */
 };
 
+/* Returns the same camera, but it sees the picture instead of the plane: all points are where they are seen. */
+CAMBER_FN camber_eye camber_eye_upright(camber_eye e) {
+    e.cosine = 1.0f;
+    e.fall = 0.0f;
+    return e;
+}
+
 CAMBER_FN camber_real camber_pitch_depth(camber_eye e, camber_real y) {
     const camber_real depth = 1.0f - e.fall * y, least = CAMBER_REAL(CAMBER_PITCH_LEAST);
     return CAMBER_MORE(depth, least);

@@ -25,6 +25,8 @@
 #define CAMBER_PLANE_MARGIN 22 /* the most px of the plane / depth per px along the segment */
 #define CAMBER_PLANE_LEFT 23   /* its sides in the picture, three words each: camber_pitch_project_edge */
 #define CAMBER_PLANE_RIGHT 26
+#define CAMBER_PLANE_COSINE 29 /* camber_eye, cosine and fall: 1 and 0 if the segment is upright */
+#define CAMBER_PLANE_FALL 30
 
 /* By how much the footprint is wider than what is drawn, so that rounding does not matter. */
 #define CAMBER_PITCH_SLACK_PX 0.02f

@@ -17,7 +17,7 @@
 
 /* A list's segments are scattered in memory. If the compiler is known to be clang, the segments of the next batch are
  * prefetched while a batch is drawn. Pixels bypass the caches, because nobody reads them before all tiles are drawn. */
-#if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
+#if (defined(POCL_DEVICE_ADDRESS_BITS) || defined(CAMBER_AHEAD_OF_TIME)) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define AHEAD 24
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
 #define WRITE(vector, at) __builtin_nontemporal_store(vector, (global camber_words *)(at))

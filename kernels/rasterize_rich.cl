@@ -20,7 +20,7 @@ static inline void fill_with_images(camber_tile_state *c, const positions *at, d
             camber_image_spot spot;
             camber_real rgba[4];
 #if CAMBER_RASTER_PITCHED
-            camber_plane_spot(from.eye, x, y, &spot);
+            camber_plane_spot(camber_fill_eye(&m, from.eye), x, y, &spot);
 #else
             spot.x = x;
             spot.y = y;

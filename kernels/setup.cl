@@ -115,15 +115,15 @@ static inline void put_segments(camber_real *words, global float *segments, size
 }
 
 #if CAMBER_RASTER_PITCHED
-static inline void put_planes(const camber_segment *s, const camber_plane *p, global float *planes) {
-    const camber_real none = CAMBER_REAL(0.0f);
+static inline void put_planes(const camber_segment *s, const camber_plane *p, camber_eye e, global float *planes) {
+    const camber_real none = CAMBER_REAL(0.0f), cosine = CAMBER_REAL(e.cosine), fall = CAMBER_REAL(e.fall);
     camber_real words[16] = {s->ax,          s->ay,      s->bx,      s->by,      s->ux,         s->uy,
                              s->nax,         s->nay,     s->nbx,     s->nby,     s->half_width, p->cut_a.owner,
                              p->cut_b.owner, p->cut_a.x, p->cut_a.y, p->cut_a.at};
     put_segments(words, planes, CAMBER_PLANE_WORDS);
     camber_real rest[16] = {p->cut_a.wide, p->cut_b.x, p->cut_b.y, p->cut_b.at, p->cut_b.wide, p->ends,
                             p->margin,     p->left[0], p->left[1], p->left[2],  p->right[0],   p->right[1],
-                            p->right[2],   none,       none,       none};
+                            p->right[2],   cosine,     fall,       none};
     put_segments(rest, planes + 16, CAMBER_PLANE_WORDS);
 }
 #endif
@@ -224,7 +224,7 @@ static inline void make_segments(part_points from, global const float *rows, glo
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
         return;
 #if CAMBER_RASTER_PITCHED
-    put_planes(&flat, &plane, to.planes);
+    put_planes(&flat, &plane, r->eye, to.planes);
     put_arc_lengths(slot_arc_lengths, first, e.is_dot, r, &flat, to.arc_lengths);
 #elif CAMBER_RASTER_RICH
     put_arc_lengths(slot_arc_lengths, first, e.is_dot, r, &s, to.arc_lengths);

@@ -33,6 +33,7 @@ void main() {
     m.across_y = u_axis_y.x;
     m.down_x = u_axis_x.y;
     m.down_y = u_axis_y.y;
+    m.upright = 0.0;
     for (int k = 0; k < 4; k++)
         m.mean[k] = mean[k];
     if (u_eye.w > 0.0)

@@ -248,7 +248,7 @@ typedef struct camber_stroke {
     float round_limit;
 } camber_stroke;
 
-/* ---- OpenCL devices ------------------------------------------------------------------------------- */
+/* ---- Devices -------------------------------------------------------------------------------------- */
 
 typedef enum camber_device_type {
     CAMBER_DEVICE_TYPE_OTHER = 0,
@@ -259,13 +259,16 @@ typedef enum camber_device_type {
 typedef struct camber_device_info {
     char name[128];
     char platform[128];
-    char version[128]; /* "OpenCL 3.0 ..." */
+    char version[128]; /* "OpenCL 3.0 ...", or the compiler of fixed kernels */
     char driver[64];
     camber_device_type type;
     uint32_t compute_units;
     uint64_t memory_bytes;
     uint64_t largest_buffer_bytes; /* for an open device: what its desc allows, if that is less */
     bool gl_sharing;               /* cl_khr_gl_sharing */
+    /* The processor itself, whose kernels were compiled with the library. The work-group size and the lanes of a desc
+     * must be 0. */
+    bool fixed_kernels;
 } camber_device_info;
 
 /* Sets *info to the n-th device, counted from 0, of the devices that match names, or to NULL past the last one. match
@@ -285,7 +288,8 @@ typedef struct camber_gl_handles {
 } camber_gl_handles;
 
 typedef struct camber_device_desc {
-    /* "cpu", "gpu", or part of the name of a device or a platform; case is ignored. NULL: a GPU, else a CPU. */
+    /* "cpu", "gpu", or part of the name, platform or version of a device ("opencl", "pocl"); case is ignored. NULL: a
+     * GPU, else a CPU. */
     const char *match;
     /* Which of the matching devices to open, in the order of camber_device_list: 1 is the first. 0: the first
      * GPU, else the first CPU. */
@@ -312,6 +316,9 @@ typedef struct camber_device_desc {
      * same bytes.
      * 0: three quarters of the device's memory, or no limit if the device uses the host's memory. */
     uint64_t memory_bytes;
+    /* Threads of a CPU with fixed kernels, including the caller's. OpenCL's drivers decide this themselves. 0: one for
+     * each core that the process may use. */
+    uint32_t threads;
     /* The surface whose renderers will draw the device's meshes in GL. Zero: none, so buffers are copied. */
     camber_gl_handles gl;
 } camber_device_desc;
@@ -322,7 +329,9 @@ typedef struct camber_device camber_device;
  * Returns CAMBER_ERROR_DEVICE (no platform, no matching device, or fewer matching devices than number),
  * CAMBER_ERROR_ARGUMENT (an invalid work-group size or number of lanes, a largest buffer below 4096 bytes, a memory
  * limit below 65536), CAMBER_ERROR_MEMORY.
- * No kernel is built here: the kernels of a method are built, or loaded from the cache, when it is first used. */
+ * No kernel is built here: the kernels of a method are built, or loaded from the cache, when it is first used. Kernels
+ * of a device with fixed_kernels are part of the library. Its calls run kernels on the caller's thread, too, which
+ * needs 256 KB of stack. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
@@ -668,6 +677,9 @@ typedef struct camber_pass {
     camber_fill fill;
     camber_overlap overlap;
     float opacity; /* the pass is composited onto the picture as one layer with this opacity. 0: 1, and no layer */
+    /* The polylines are in px of the picture as it is seen, whatever its pitch, and so are their paints' lengths: for
+     * labels that stand upright. false: both are in the plane. It makes no difference without a pitch, or to fills. */
+    bool upright;
 } camber_pass;
 
 /* A picture, made by drawing its passes one over the other. */

@@ -60,8 +60,8 @@ CAMBER_API uint32_t camber_style_get_effects(const camber_style *style, double z
  *
  *     "city"          the built-in one: water, parks, woods, built-up land, buildings, and the roads of "roads" on them
  *     "roads"         roads of OpenStreetMap and of the US Census Bureau, and nothing else
- *     "openmaptiles"  roads, rails, rivers and borders in tiles of the OpenMapTiles schema
- *     "transit"       lines of public transport side by side
+ *     "openmaptiles"  what "city" draws of tiles of the OpenMapTiles schema
+ *     "transit"       lines of public transport side by side, and stations
  *
  * "openmaptiles" reads openmaptiles.mbtiles in the working folder, and "transit" transit.geojson there. */
 CAMBER_API const char *camber_style_list(size_t n);
@@ -223,7 +223,7 @@ CAMBER_API bool camber_features_get_drawn_bounds(const camber_features *features
 
 /* Gives another style to a set that was read from files; scenes and engines that are made from then on use it. The
  * lines do not change. The new style must read the same properties as the old one, in the same order, as the themes of
- * one style do, and it must have no sprites. It must outlive the set.
+ * one style do, and the same sprites. It must outlive the set.
  * Returns CAMBER_ERROR_ARGUMENT (the style reads other properties; read the files into another set). */
 CAMBER_API camber_status camber_features_restyle(camber_features *features, const camber_style *style);
 
@@ -295,8 +295,8 @@ CAMBER_API camber_status camber_features_read_sprites(camber_features *features,
 /* Reads the fonts that labels are drawn with; without this call symbol layers are left out. Call it before files are
  * read, because features that are only labelled are read only if there are fonts. Glyphs that the style names (as
  * files: nothing is downloaded) are used before fonts. Scenes of the set, except those made with CAMBER_SCENE_LINES,
- * then have the labels of their view, which camber_scene_tessellate prepares for drawing. Tiles have no labels. desc
- * may be NULL. base_path is as in camber_features_read_sources.
+ * then have the labels of their view, which camber_scene_tessellate prepares for drawing, and tiles that are pictures
+ * have the labels of their zoom. desc may be NULL. base_path is as in camber_features_read_sources.
  * Returns CAMBER_ERROR_NOT_FOUND (a folder), CAMBER_ERROR_INPUT (glyphs without {range}, or not in the root; an unknown
  * scheme), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_fonts(camber_features *features, const camber_fonts_desc *desc,

@@ -142,6 +142,10 @@ typedef struct camber_tiles_engine_desc {
  * to within one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends
  * only on its desc and on the features.
  *
+ * If fonts were read with the features (camber_features_read_fonts), pictures have labels. These have fixed places in
+ * each zoom: a label that touches several tiles is the same in all of them, whichever are drawn, in any order, at any
+ * ratio. A tile is drawn if a label touches it, even if no line does.
+ *
  * An engine, the renderer and the features serve one thread at a time. The caller owns a picture: other threads may cut
  * and encode it while the next one is drawn, each with a camber_encoder from a context of its own.
  *
@@ -165,7 +169,7 @@ typedef struct camber_tiles_picture {
     uint32_t column, row; /* of its north-western tile */
     uint32_t side;        /* tiles on a side: a power of two, 1 to 8 */
     uint32_t tile_px;     /* device px on a side of a tile */
-    /* bit side * y + x: a line may touch tile x, y of the metatile; the other tiles show only the background */
+    /* bit side * y + x: a line or a label may touch tile x, y of the metatile; the others show only the background */
     uint64_t tiles;
     bool has_background;   /* the background is the following colour, not an image */
     uint8_t background[4]; /* premultiplied RGBA */
@@ -174,12 +178,12 @@ typedef struct camber_tiles_picture {
 
 /* Returns the largest number of bytes that the pixels of one picture take. */
 CAMBER_API size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engine *engine);
-/* Finds the metatile that contains a tile, and which of its tiles lines touch, without drawing.
+/* Finds the metatile that contains a tile, and which of its tiles lines or labels touch, without drawing.
  * Returns CAMBER_ERROR_ARGUMENT (no such tile; zooms are 0 to 24), CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_tiles_engine_look(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                                   camber_tiles_picture *picture);
 /* Draws the metatile that contains a tile into rgba, which must have room for a picture, as camber_renderer_render_into
- * does. A metatile that no line touches is drawn too.
+ * does. A metatile that nothing touches is drawn too.
  * Returns the errors of camber_tiles_engine_look, camber_mesh_tessellate_network and camber_renderer_render_into. */
 CAMBER_API camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                                   uint8_t *rgba, camber_tiles_picture *picture);
@@ -250,6 +254,10 @@ typedef struct camber_tiles_draw_desc {
      * draws them, and the engine cannot draw afterwards. The deepest zoom is then drawn first, so that PMTiles are
      * copied at the end. NULL: the points are kept. */
     camber_features *spent;
+    /* A file that records which labels are in which tile. It is written once the archive is complete. With renew and
+     * tiles, it is read first, if it exists: tiles whose labels have changed since then are drawn, too, although they
+     * are not listed. Not with shards or a schedule. NULL: nothing is recorded. */
+    const char *label_record;
     /* Called as soon as no other process can write this output (camber_tiles_beside). NULL: not called. */
     void (*begun)(void *user);
     void *user;
@@ -260,12 +268,13 @@ typedef struct camber_tiles_stats {
     uint64_t background; /* tiles that were drawn, but left out because they show only the background */
     /* pictures that were drawn; once its tiles are written, a picture survives the end of the process */
     uint64_t units;
-    uint64_t resumed;  /* units that an earlier run had already drawn */
-    uint64_t emptied;  /* renew: tiles that the archive had and that are empty now */
-    uint64_t left_out; /* renew: tiles of the list that are outside the zooms and bounds */
-    uint64_t points;   /* points that were drawn, counted once per zoom and metatile */
-    uint64_t bytes;    /* bytes of the tiles; for a dry run, an estimate from sample pictures */
-    bool done;         /* resume, renew: there was nothing left to do */
+    uint64_t resumed;    /* units that an earlier run had already drawn */
+    uint64_t emptied;    /* renew: tiles that the archive had and that are empty now */
+    uint64_t left_out;   /* renew: tiles of the list that are outside the zooms and bounds */
+    uint64_t relabelled; /* renew: tiles that were added to the list because their labels have changed */
+    uint64_t points;     /* points that were drawn, counted once per zoom and metatile */
+    uint64_t bytes;      /* bytes of the tiles; for a dry run, an estimate from sample pictures */
+    bool done;           /* resume, renew: there was nothing left to do */
     double census_ms, make_ms, draw_ms, wait_ms, write_ms; /* of the calling thread; make_ms: for networks and passes */
     /* summed over all encoding threads: wall-clock time, and processor time */
     double encode_ms, encode_cpu_ms;

@@ -11,6 +11,12 @@ set(environment XDG_CACHE_HOME=${CAMBER_TEST_CACHE} POCL_CACHE_DIR=${CAMBER_TEST
     CAMBER_KERNELS=${CAMBER_TEST_KERNELS})
 get_property(all DIRECTORY PROPERTY TESTS)
 foreach(test IN LISTS all)
+  # These test OpenCL: its calls, its caches, and what drivers need. Others run on the back end cpu, if it was built.
+  get_test_property(${test} LABELS label)
+  if(label MATCHES "tool|faults|deep|recipes|cities|fuzz" OR
+     test MATCHES "^(kernels|compilations|test_(program|memory|parts|network|offset|kernels|fork))$")
+    set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT CAMBER_CPU=none)
+  endif()
   set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT ${environment})
   if(CAMBER_SANITIZE)
     # Drivers keep what they allocate until the process ends; camber's own leaks are not on the list. LLVM, inside the

@@ -1,5 +1,6 @@
 /* Mapnik's renderer over lines or areas in memory: a symbolizer as a style would have it, neither simplified nor
  * smoothed. */
+#include "peers/labels.h"
 #include "peers/layers.h"
 #include "peers/peer.h"
 
@@ -7,12 +8,15 @@
 #include <mapnik/feature.hpp>
 #include <mapnik/feature_factory.hpp>
 #include <mapnik/feature_type_style.hpp>
+#include <mapnik/font_engine_freetype.hpp>
 #include <mapnik/image.hpp>
 #include <mapnik/layer.hpp>
+#include <mapnik/load_map.hpp>
 #include <mapnik/map.hpp>
 #include <mapnik/memory_datasource.hpp>
 #include <mapnik/rule.hpp>
 #include <mapnik/symbolizer.hpp>
+#include <mapnik/unicode.hpp>
 #include <mapnik/version.hpp>
 
 #include <chrono>
@@ -191,6 +195,43 @@ void add_layer(mapnik::Map &map, const bench_layer &layer, const std::string &na
     map.add_layer(std::move(made));
 }
 
+/* ---- Labels ---- */
+
+std::shared_ptr<mapnik::memory_datasource> make_source(const bench_labels &labels) {
+    const mapnik::transcoder utf8("utf-8");
+    mapnik::parameters parameters;
+    parameters["type"] = "memory";
+    const auto source = std::make_shared<mapnik::memory_datasource>(parameters);
+    const auto context = std::make_shared<mapnik::context_type>();
+    context->push("name");
+    for (std::size_t i = 0; i < labels.count; i++) {
+        const bench_label &label = labels.labels[i];
+        const mapnik::feature_ptr feature =
+            mapnik::feature_factory::create(context, static_cast<mapnik::value_integer>(i + 1));
+        feature->set_geometry(mapnik::geometry::point<double>(label.x, BENCH_SIDE_PX - label.y));
+        feature->put("name", utf8.transcode(label.text));
+        source->push(feature);
+    }
+    return source;
+}
+
+mapnik::Map make_map(const bench_labels &labels) {
+    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
+    mapnik::freetype_engine::register_font(labels.font_file);
+    const std::string symbolizer = std::string("<TextSymbolizer fill=\"black\" halo-fill=\"white\" ") +
+                                   "allow-overlap=\"true\" face-name=\"" + labels.font + "\" size=\"" +
+                                   std::to_string(labels.size_px) + "\" halo-radius=\"" +
+                                   std::to_string(labels.halo_px) + "\">[name]</TextSymbolizer>";
+    mapnik::load_map_string(map, "<Map background-color=\"#808080\"><Style name=\"labels\"><Rule>" + symbolizer +
+                                     "</Rule></Style></Map>");
+    mapnik::layer layer("labels", "epsg:3857");
+    layer.set_datasource(make_source(labels));
+    layer.add_style("labels");
+    map.add_layer(std::move(layer));
+    map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
+    return map;
+}
+
 const char *version() {
     return MAPNIK_VERSION_STRING;
 }
@@ -210,6 +251,14 @@ extern "C" double bench_mapnik_layers(const bench_layer *layers, std::size_t cou
             add_layer(map, layers[i], std::to_string(i));
         map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
         return render(map, rgba);
+    } catch (const std::exception &) {
+        return -1;
+    }
+}
+
+extern "C" double bench_mapnik_labels(const bench_labels *labels, uint8_t *rgba) {
+    try {
+        return render(make_map(*labels), rgba);
     } catch (const std::exception &) {
         return -1;
     }

@@ -4,11 +4,13 @@ from ._core import (ArgumentError, Context, DeviceError, Error, FileError, Input
                     OutOfMemoryError, devices, lib as _lib, version as _version)
 from ._draw import Mesh, Network, draw, encode, tessellate
 from ._map import Map, render, styles, tiles
+from ._text import Text
+from . import text
 
 __version__ = _version()
 __all__ = ["ArgumentError", "Context", "DeviceError", "Error", "FileError", "InputError", "LimitError", "Map", "Mesh",
-           "Network", "NotFoundError", "OutOfMemoryError", "devices", "draw", "encode", "render", "styles",
-           "tessellate", "tiles"]
+           "Network", "NotFoundError", "OutOfMemoryError", "Text", "devices", "draw", "encode", "render", "styles",
+           "tessellate", "text", "tiles"]
 
 if __version__.split(".")[:2] != [str(_lib.CAMBER_VERSION_MAJOR), str(_lib.CAMBER_VERSION_MINOR)]:
     raise ImportError("camber was built for version %d.%d of its library, and finds %s; build it again"

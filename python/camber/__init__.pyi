@@ -1,8 +1,10 @@
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Iterable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy
 import numpy.typing
+
+from . import text as text
 
 _Array = numpy.typing.NDArray[Any]
 _Picture = numpy.typing.NDArray[numpy.uint8]
@@ -13,6 +15,7 @@ _Color = Union[str, Sequence[float]]
 _Colors = Union[_Color, Sequence[_Color], _Array]
 _Widths = Union[float, Sequence[float], _Array]
 _Size = Tuple[int, int]
+_Fonts = Union[str, Sequence[str]]
 
 __version__: str
 
@@ -34,11 +37,22 @@ class Context:
 
 def devices() -> list[dict[str, Any]]: ...
 
+class Text:
+    def __init__(self, x: float, y: float, text: str, *, size: float = 16, color: _Color = "#000",
+                 halo: Optional[_Color] = None, halo_width: float = 1.5, angle: float = 0, font: _Fonts = ...,
+                 anchor: str = ..., align: str = ..., max_width: float = ..., line_height: float = ...,
+                 letter_spacing: float = ..., vertical: bool = ..., language: Optional[str] = ...) -> None: ...
+    @classmethod
+    def along(cls, points: Any, text: str, *, shift: float = 0, keep_direction: bool = False, max_turn: float = 45,
+              size: float = ..., color: _Color = ..., halo: Optional[_Color] = ..., halo_width: float = ...,
+              font: _Fonts = ..., anchor: str = ..., align: str = ..., max_width: float = ..., line_height: float = ...,
+              letter_spacing: float = ..., language: Optional[str] = ...) -> Text: ...
+
 def draw(points: _Lines, offsets: Optional[Any] = None, *, width: _Widths = 8, color: _Colors = "#336",
          size: _Size = (1024, 1024), rows: Optional[Any] = None, background: Optional[_Color] = None,
          overlap: str = "flatten", opacity: float = 1, pitch: float = 0, keep_open: bool = False,
-         premultiplied: bool = False, out: Optional[_Picture] = None, context: Optional[Context] = None,
-         join: str = ..., cap: str = ..., miter_limit: float = ..., offset: float = ..., gap: float = ...,
+         premultiplied: bool = False, out: Optional[_Picture] = None, texts: Union[Text, Iterable[Text]] = (),
+         fonts: Sequence[_Path] = (), context: Optional[Context] = None, join: str = ..., cap: str = ..., miter_limit: float = ..., offset: float = ..., gap: float = ...,
          blur: float = ..., dash: Optional[Sequence[float]] = ...) -> _Picture: ...
 
 class Mesh(NamedTuple):

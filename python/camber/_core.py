@@ -251,6 +251,7 @@ class Context:
         self._desc.match = self._match
         self._rasterizer = rasterizer
         self._opened = None
+        self._fonts = {}  # by their folders
 
     def _open(self, core):
         """Returns (device, renderer, a mesh for temporary pictures), opened by the first call that needs them."""

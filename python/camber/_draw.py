@@ -5,8 +5,10 @@ import operator
 
 import numpy
 
+from ._arrays import as_colors, dtype_of, parse_color, view
 from ._core import ArgumentError, check_memory, default, lib, ffi, pick
 from ._lines import as_lines, as_whole
+from ._text import add_passes, as_texts
 
 JOINS = {"round": lib.CAMBER_JOIN_ROUND, "miter": lib.CAMBER_JOIN_MITER, "bevel": lib.CAMBER_JOIN_BEVEL}
 CAPS = {"butt": lib.CAMBER_CAP_BUTT, "round": lib.CAMBER_CAP_ROUND, "square": lib.CAMBER_CAP_SQUARE}
@@ -14,80 +16,11 @@ OVERLAPS = {"flatten": lib.CAMBER_OVERLAP_FLATTEN, "accumulate": lib.CAMBER_OVER
             "unite": lib.CAMBER_OVERLAP_UNITE}
 METHODS = {"strip": lib.CAMBER_METHOD_STRIP, "kite": lib.CAMBER_METHOD_KITE, "fan": lib.CAMBER_METHOD_FAN}
 ENCODINGS = {"png": lib.CAMBER_ENCODING_PNG, "png8": lib.CAMBER_ENCODING_PNG8, "webp": lib.CAMBER_ENCODING_WEBP}
-KINDS = {"float": "f4", "double": "f8", "int16_t": "i2", "uint16_t": "u2", "int32_t": "i4", "uint32_t": "u4",
-         "uint8_t": "u1", "size_t": "u8"}
-
-
-def dtype_of(name):
-    """Returns numpy's type of a C struct: its numeric fields, at the offsets that the compiler chose."""
-    names, formats, offsets = [], [], []
-    for field, about in ffi.typeof(name).fields:
-        kind = KINDS.get(about.type.cname) or ("u4" if about.type.kind == "enum" else None)
-        if about.type.kind == "struct":
-            kind = dtype_of(about.type.cname)
-        if kind:
-            names.append(field)
-            formats.append(kind)
-            offsets.append(about.offset)
-    return numpy.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(name)})
-
-
 TAKE_ROWS = ffi.addressof(lib, "camber_python_take_rows")
 STROKE, PAINT, RECORD, VERTEX = (dtype_of("camber_" + name) for name in ("stroke", "paint", "record", "vertex"))
 
 
-def view(pointer, name, count, owner):
-    """Returns a structured array that uses the library's memory, without a copy. owner frees the memory."""
-    if pointer == ffi.NULL or count == 0:
-        return numpy.zeros(0, name if isinstance(name, numpy.dtype) else numpy.dtype(name))
-    dtype = numpy.dtype(name)
-    kept = ffi.gc(ffi.cast("char *", pointer), lambda _, owner=owner: None)
-    return numpy.frombuffer(ffi.buffer(kept, count * dtype.itemsize), dtype)
-
-
-# ---- Colours and styles ----
-
-
-def parse_color(color):
-    """Parses "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", or three or four numbers from 0 to 1; returns four floats from 0
-    to 1."""
-    if isinstance(color, str):
-        digits = color[1:]
-        if len(digits) in (3, 4):
-            digits = "".join(digit * 2 for digit in digits)
-        try:
-            if color[:1] == "#" and len(digits) in (6, 8) and digits.isalnum():
-                return tuple(byte / 255 for byte in bytes.fromhex(digits)) + (1.0,) * (len(digits) == 6)
-        except ValueError:
-            pass
-    else:
-        try:
-            values = tuple(float(value) for value in color)
-        except (TypeError, ValueError):
-            values = ()
-        if len(values) in (3, 4) and all(0 <= value <= 1 for value in values):
-            return values + (1.0,) * (len(values) == 3)
-    raise ArgumentError("%r is not a colour; give \"#rgb\", \"#rrggbb\", either followed by alpha, or three or four "
-                        "numbers from 0 to 1" % (color,))
-
-
-def as_colors(color):
-    """Returns n x 4 floats, and whether several colours were given: an array, or a list of values for parse_color."""
-    if isinstance(color, str) or (numpy.ndim(color) == 1 and len(color) and not isinstance(color[0], str)):
-        return numpy.array([parse_color(color)], numpy.float32), False
-    array = numpy.asarray(color)
-    if array.size == 0:
-        return numpy.zeros((0, 4), numpy.float32), True
-    if array.dtype == numpy.uint8:
-        array = array / numpy.float32(255)
-    if array.dtype.kind != "f":
-        return numpy.array([parse_color(each) for each in color], numpy.float32).reshape(-1, 4), True
-    if array.ndim != 2 or array.shape[1] not in (3, 4) or not ((array >= 0) & (array <= 1)).all():
-        raise ArgumentError("colours have the shape %s; give n x 3 or n x 4, numbers from 0 to 1 or bytes"
-                            % (array.shape,))
-    colors = numpy.ones((len(array), 4), numpy.float32)
-    colors[:, :array.shape[1]] = array
-    return colors, True
+# ---- Styles ----
 
 
 def as_rows(rows, lines):
@@ -207,14 +140,14 @@ def frame_of(table, mesh, size, background, overlap, opacity, pitch=0):
     if not 0 < opacity <= 1:
         raise ArgumentError("opacity is %r; give more than 0, 1 at most" % (opacity,))
     width, height = size
-    pass_ = ffi.new("camber_pass *", {
+    passes = ffi.new("camber_pass[3]", [{
         "mesh": mesh, "paints": table.pointers[1], "paint_count": len(table.paints),
-        "overlap": pick(OVERLAPS, "overlap", overlap), "opacity": 0 if opacity == 1 else opacity})
-    frame = ffi.new("camber_frame *", {"width": width, "height": height, "passes": pass_, "pass_count": 1,
+        "overlap": pick(OVERLAPS, "overlap", overlap), "opacity": 0 if opacity == 1 else opacity}])
+    frame = ffi.new("camber_frame *", {"width": width, "height": height, "passes": passes, "pass_count": 1,
                                        "pitch_deg": pitch})
     if background is not None:
         frame.background = parse_color(background)
-    return frame, pass_
+    return frame, passes
 
 
 def make_polylines(core, lines, rows, keep_open):
@@ -226,9 +159,10 @@ def make_polylines(core, lines, rows, keep_open):
 
 
 def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows=None, background=None,
-         overlap="flatten", opacity=1, pitch=0, keep_open=False, premultiplied=False, out=None, context=None, **style):
-    """Draws lines in pixels; returns a uint8 array of height x width x 4."""
-    context = default(context)
+         overlap="flatten", opacity=1, pitch=0, keep_open=False, premultiplied=False, out=None, texts=(), fonts=(),
+         context=None, **style):
+    """Draws lines in pixels, and texts over them; returns a uint8 array of height x width x 4."""
+    context, texts = default(context), as_texts(texts)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
     table = Table(width, color, as_rows(rows, lines), lines, **style)
     size = as_size(size)
@@ -236,8 +170,11 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
         _, renderer, mesh = context._open(core)
         polylines = make_polylines(core, lines, table.rows, keep_open)
         core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation()))
-        frame, _ = frame_of(table, mesh, size, background, overlap, opacity, pitch)
-        return render_frame(core, renderer, frame, out, premultiplied)
+        frame, passes = frame_of(table, mesh, size, background, overlap, opacity, pitch)
+        kept = add_passes(core, context, frame, passes, mesh, texts, fonts) if texts else None
+        picture = render_frame(core, renderer, frame, out, premultiplied)
+        del kept  # the frame refers to it
+        return picture
 
 
 Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")

@@ -270,10 +270,12 @@ static int read_for_view(const camber_input *input, bool *done) {
     return camber_report_status(input->session->report, camber_features_read_for(input->features, &desc));
 }
 
-/* Labels are drawn in pictures of one view. */
+/* Labels are drawn in pictures and in tiles that are pictures. */
 static int read_fonts(const camber_input *input) {
     const camber_options *options = input->session->options;
-    if (options->verb != CAMBER_VERB_RENDER || options->no_labels)
+    const bool pictures = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_SERVE ||
+                          (options->verb == CAMBER_VERB_TILES && options->format != CAMBER_FORMAT_GLB);
+    if (!pictures || options->no_labels)
         return CAMBER_EXIT_DONE;
     const camber_fonts_desc desc = {.folders = options->fonts, .folder_count = options->font_count};
     return camber_report_status(input->session->report,

@@ -105,7 +105,8 @@ typedef struct camber_options {
     size_t place_count;
     const char *renewed; /* a file with tiles to redraw */
     const char *region, *name, *description, *shard;
-    const char *schedule; /* a file that a dry run writes and other runs read */
+    const char *schedule;     /* a file that a dry run writes and other runs read */
+    const char *label_record; /* a file that says which labels are in which tile */
     uint32_t shards;
     bool resume, keep_empty, dry_run;
     /* Serving: */

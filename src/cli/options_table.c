@@ -36,7 +36,7 @@ enum {
 #endif
     SEEN = MAPS & ~PYRAMIDS, /* have a single view of a map */
     STYLED = MAPS & ~COMPARE,
-    LABELLED = MAPS & RENDER,
+    LABELLED = MAPS & (RENDER | PYRAMIDS),
     PRINTED = MAPS & RENDER,
     SIGNED = MAPS & (RENDER | TESSELLATE | PYRAMIDS),
 };
@@ -157,7 +157,7 @@ const camber_option_spec camber_option_specs[] = {
                 "drop points that move the line by at most T device pixels (0.1; with --polylines 0); 0 keeps all"},
                {READING, "drop points that move the line by at most T device pixels (0, which keeps all)"}}},
     {"device", 0, CAMBER_OPTION_DEVICE, EVERY | PYRAMIDS, FIELD(device), "TEXT",
-     "OpenCL device: cpu, gpu, or part of a device's name"},
+     "device: cpu, gpu, opencl, or part of a device's name"},
     {"backend", 0, CAMBER_OPTION_CHOICE, EVERY | PYRAMIDS, FIELD(backend), "auto|egl|osmesa",
      "library that provides GL (auto)"},
     {"sharing", 0, CAMBER_OPTION_CHOICE, RENDER | COMPARE | BENCH | INFO | PYRAMIDS, FIELD(sharing),
@@ -200,6 +200,8 @@ const camber_option_spec camber_option_specs[] = {
      "total number of shards, if --shard auto cannot detect it", 1, 65535},
     {"schedule", 0, CAMBER_OPTION_FILE, TILES, FIELD(schedule), "FILE",
      "with --dry-run, write a schedule; otherwise draw from one, reading only what the shard needs"},
+    {"label-record", 0, CAMBER_OPTION_FILE, TILES, FIELD(label_record), "FILE",
+     "record the labels of each tile; --renew then also renews tiles whose labels have changed"},
     {"listen", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(listen), "ADDRESS:PORT",
      "address to listen on (127.0.0.1:8080); port 0 picks a free one"},
     {"public-url", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(public_url), "URL",

@@ -146,6 +146,13 @@ static int check_schedule(const camber_option_reader *p) {
 
 static int check_run(const camber_option_reader *p) {
     const camber_options *options = p->options;
+    if (options->label_record && (options->shard || options->schedule))
+        return camber_options_refuse(p,
+                                     "--label-record and --%s: cannot be combined, because a part of a run does not "
+                                     "place the labels of all; leave out one",
+                                     options->shard ? "shard" : "schedule");
+    if (options->label_record && (options->no_labels || options->format == CAMBER_FORMAT_GLB))
+        return camber_options_refuse(p, "--label-record: the tiles have no labels; leave it out");
     if (options->renewed && (options->shard || options->resume || options->force || options->dry_run))
         return camber_options_refuse(
             p,

@@ -132,6 +132,7 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
         const camber_device_desc desc = {.match = options->device,
                                          .memory_bytes =
                                              options->memory_bytes || !small ? options->memory_bytes : TILES_BYTES,
+                                         .threads = options->threads,
                                          .gl = camber_surface_get_handles(session->surface)};
         status = camber_device_create(context, &desc, &session->device);
     }

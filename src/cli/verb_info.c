@@ -9,11 +9,12 @@ static json_t *device_json(const camber_device_info *info) {
     const char *type = info->type == CAMBER_DEVICE_TYPE_CPU   ? "cpu"
                        : info->type == CAMBER_DEVICE_TYPE_GPU ? "gpu"
                                                               : "other";
-    return json_pack("{s:o, s:o, s:o, s:o, s:s, s:I, s:I, s:I, s:b}", "name", camber_json_text(info->name), "platform",
-                     camber_json_text(info->platform), "version", camber_json_text(info->version), "driver",
+    return json_pack("{s:o, s:o, s:o, s:o, s:s, s:I, s:I, s:I, s:b, s:b}", "name", camber_json_text(info->name),
+                     "platform", camber_json_text(info->platform), "version", camber_json_text(info->version), "driver",
                      camber_json_text(info->driver), "type", type, "compute_units", (json_int_t)info->compute_units,
                      "memory_bytes", (json_int_t)info->memory_bytes, "largest_buffer_bytes",
-                     (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
+                     (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing, "fixed_kernels",
+                     info->fixed_kernels);
 }
 
 /* Takes the message of the last failure out of the report, so that it is not printed again. */
@@ -127,9 +128,10 @@ static void print_text(const json_t *object) {
                json_is_true(json_object_get(entry, "gl_sharing")) ? ", cl_khr_gl_sharing" : "");
     }
     if (i == 0)
-        printf("device    none: %s\n", json_object_get(object, "devices_error")
-                                           ? text_of(object, "devices_error")
-                                           : "no OpenCL device here; install pocl-opencl-icd or a GPU's driver");
+        printf("device    none: %s\n",
+               json_object_get(object, "devices_error")
+                   ? text_of(object, "devices_error")
+                   : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
     json_array_foreach(json_object_get(object, "backends"), i, entry) {
         if (json_is_true(json_object_get(entry, "available")))
             printf("GL        %s: %s, %s, targets up to %lld px\n", text_of(entry, "name"),

@@ -262,6 +262,7 @@ static camber_tiles_draw_desc describe(job *j) {
                                     .schedule_path = options->dry_run ? options->schedule : NULL,
                                     .inputs = options->inputs,
                                     .input_count = options->input_count,
+                                    .label_record = options->label_record,
                                     .spent = has_many_points(j) ? j->input.features : NULL,
                                     .begun = begin,
                                     .user = j};
@@ -342,6 +343,7 @@ static int print_json(const job *j) {
                   {"resumed_units", stats->resumed},
                   {"emptied_tiles", stats->emptied},
                   {"left_out_tiles", stats->left_out},
+                  {"relabelled_tiles", stats->relabelled},
                   {"points", stats->points},
                   {"points_in", j->input.points_in},
                   {"bytes", stats->bytes},
@@ -420,6 +422,9 @@ static void print_text(const job *j) {
     if (stats->emptied)
         camber_report_say(report, "%llu tile%s removed, because nothing is there now",
                           (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));
+    if (stats->relabelled)
+        camber_report_say(report, "%llu tile%s of these not listed, but with other labels than before",
+                          (unsigned long long)stats->relabelled, camber_plural((size_t)stats->relabelled));
     if (stats->resumed)
         camber_report_say(report, "%llu metatile%s had been drawn before", (unsigned long long)stats->resumed,
                           camber_plural((size_t)stats->resumed));

@@ -34,10 +34,12 @@ static camber_status add_texels(camber_side_table *table, size_t count, size_t *
     return *words ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-/* Finds an image in the size that a use needs, or adds it. */
-static camber_status hold(camber_cl_images *images, const camber_image_use *use, camber_cl_image *found) {
+/* Finds an image in the size that a use needs, or adds it. nearest: the most px of the picture that one of its px
+ * takes. */
+static camber_status hold(camber_cl_images *images, const camber_image_use *use, double nearest,
+                          camber_cl_image *found) {
     camber_context *context = images->table->context;
-    const camber_image_size size = camber_image_texels(use, images->nearest);
+    const camber_image_size size = camber_image_texels(use, nearest);
     for (size_t i = images->count; i-- > 0;)
         if (is_same(images->held + i, use->image, size)) {
             *found = images->held[i];
@@ -90,7 +92,7 @@ static camber_status add_words(camber_cl_images *images, const float words[CAMBE
 camber_status camber_cl_images_add_line(camber_cl_images *images, const camber_image_use *use, uint32_t *words) {
     camber_cl_image held;
     float put[CAMBER_IMAGE_WORDS] = {0};
-    const camber_status status = hold(images, use, &held);
+    const camber_status status = hold(images, use, images->nearest, &held);
     if (status != CAMBER_OK)
         return status;
     put_texels(put, &held, use->width_px);
@@ -105,9 +107,10 @@ camber_status camber_cl_images_add_fill(camber_cl_images *images, const camber_d
     const float width_px = (float)use->width_px, height_px = (float)use->height_px;
     camber_cl_image mean, held;
     float put[CAMBER_IMAGE_WORDS] = {0};
-    camber_status status = hold(images, list->image_uses + fill->mean_use, &mean);
+    const double nearest = fill->upright ? 1.0 : images->nearest;
+    camber_status status = hold(images, list->image_uses + fill->mean_use, nearest, &mean);
     if (status == CAMBER_OK)
-        status = hold(images, use, &held);
+        status = hold(images, use, nearest, &held);
     if (status != CAMBER_OK)
         return status;
     put_texels(put, &held, use->width_px);
@@ -117,6 +120,7 @@ camber_status camber_cl_images_add_fill(camber_cl_images *images, const camber_d
     put[7] = sine / height_px;
     put[8] = -sine / width_px;
     put[9] = cosine / height_px;
+    put[10] = fill->upright ? 1.0f : 0.0f;
     /* The mean is one texel, in the middle of three by three. */
     const uint8_t *middle = (const uint8_t *)(images->table->texels + 4 * mean.first) + 16;
     for (size_t k = 0; k < 4; k++)

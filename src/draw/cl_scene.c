@@ -200,6 +200,7 @@ static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list
                                        .end = command->end,
                                        .first_row = t->row_count,
                                        .is_area = is_area,
+                                       .upright = command->upright,
                                        .first_change = t->change_count,
                                        .change_count = is_area ? command->span_count - 1 : 0};
     if (!camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))

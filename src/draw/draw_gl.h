@@ -51,6 +51,7 @@ typedef struct camber_batch_range {
 
 typedef struct camber_batch {
     camber_mesh *mesh; /* mesh of all ranges */
+    bool upright;      /* all ranges are */
     size_t table_count;
     unsigned features; /* CAMBER_FEATURE_* of its commands */
     camber_batch_range *ranges;

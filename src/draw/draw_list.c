@@ -158,14 +158,18 @@ static camber_status make_fill(camber_draw_list *list, const camber_fill *fill, 
 }
 
 /* Makes the row of a polygon, with its own fill. */
-static camber_status make_area_row(camber_draw_list *list, const camber_paint *paint, camber_row_paint *row) {
+static camber_status make_area_row(const row_maker *m, const camber_paint *paint, camber_row_paint *row) {
+    camber_draw_list *list = m->list;
     if (!camber_grow(list->context, &list->fills, &list->fill_capacity, list->fill_count + 1, sizeof *list->fills))
         return CAMBER_ERROR_MEMORY;
     *row = (camber_row_paint){.half_gap_px = -1.0f,
                               .translate_px = {paint->translate_x_px, paint->translate_y_px},
                               .color = {1.0f, 1.0f, 1.0f, paint->fill->color.a},
                               .fill = (int32_t)list->fill_count};
-    return make_fill(list, paint->fill, list->fills + list->fill_count++);
+    camber_fill_paint *fill = list->fills + list->fill_count++;
+    const camber_status status = make_fill(list, paint->fill, fill);
+    fill->upright = m->pass->upright;
+    return status;
 }
 
 static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row) {
@@ -174,7 +178,7 @@ static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row
     const camber_paint *paint = pass->paints + number;
     camber_status status = CAMBER_OK;
     if (paint->fill)
-        return make_area_row(m->list, paint, row);
+        return make_area_row(m, paint, row);
     *row = (camber_row_paint){.half_width_px = camber_paint_half_width(paint),
                               .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
                               .blur_px = (paint->smooth_blur ? -1.0f : 1.0f) * fmaxf(paint->blur_px, 0.0f),
@@ -410,6 +414,7 @@ static camber_status add_span(command_maker *m, span s, bool is_whole) {
                                    .span_count = span_count,
                                    .first = s.first,
                                    .end = s.end,
+                                   .upright = m->pass->upright,
                                    .first_row = m->first_row,
                                    .features = s.features,
                                    .composite = composite_of(&s),

@@ -51,6 +51,7 @@ typedef struct camber_fill_paint {
     float x_px, y_px;           /* the top left corner of one image, in the picture */
     double bearing_deg;
     camber_fill_rule rule;
+    bool upright; /* the image is in the picture as it is seen, not in the plane */
 } camber_fill_paint;
 
 /* Consecutive polygons with the same fill. */
@@ -64,6 +65,7 @@ typedef struct camber_draw_command {
     camber_fill_paint fill;        /* fill of the picture */
     size_t first_span, span_count; /* in the list, if composite is AREA: only its rows with a fill are drawn */
     size_t first, end;             /* polylines of the mesh */
+    bool upright;                  /* these are in the picture as it is seen, not in the plane */
     size_t first_row;              /* in the list's rows; every row of the mesh has one */
     unsigned features;             /* CAMBER_FEATURE_* of its rows */
     camber_composite composite;

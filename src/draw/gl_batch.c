@@ -112,7 +112,7 @@ static bool has_room(const camber_renderer *renderer, const camber_draw_command 
     const camber_mesh *mesh = command->mesh;
     const size_t tables = batch->table_count + 1;
     const unsigned bits = has_numbered_tables(mesh, area) ? vertex_bits(mesh, area->view.pitched) : 0;
-    return batch->mesh == mesh && tables * mesh->row_count <= ROWS_MAX &&
+    return batch->mesh == mesh && batch->upright == command->upright && tables * mesh->row_count <= ROWS_MAX &&
            camber_rows_fit(renderer, tables * mesh->row_count,
                            side_texels(renderer, batch->features | command->features)) &&
            tables <= (size_t)1 << (31 - bits);
@@ -148,6 +148,7 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_comm
     if (status != CAMBER_OK)
         return status;
     batch->mesh = command->mesh;
+    batch->upright = command->upright;
     batch->features |= command->features;
     batch->ranges[batch->range_count++] = (camber_batch_range){command->first, command->end, batch->table_count++};
     return CAMBER_OK;
@@ -290,6 +291,8 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
         gl->Uniform1i(shader->side_table, (GLint)(CAMBER_ROW_TEXELS * row_count));
         if (variant & CAMBER_VARIANT_PATTERN)
             camber_atlas_bind(renderer);
+        if (area->view.pitched && batch->upright)
+            gl->Uniform4f(shader->eye, area->view.eye[0], area->view.eye[1], 1.0f, 0.0f);
         if (area->view.pitched)
             camber_gl_hide_horizon(renderer, area);
         status = draw_ranges(renderer, shader, area);

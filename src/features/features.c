@@ -110,6 +110,13 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features);
 }
 
+uint64_t camber_features_key(const camber_features *f) {
+    const uint64_t values[] = {(uintptr_t)f->style, f->restyles,         f->point_count, f->polyline_count,
+                               f->feature_count,    f->class_count,      f->value_count, (uintptr_t)f->sprites,
+                               (uintptr_t)f->fonts, (uintptr_t)f->points};
+    return camber_hash(CAMBER_HASH_START, values, sizeof values);
+}
+
 void camber_features_release_points(camber_features *features) {
     camber_free(features->context, features->importance);
     camber_free(features->context, features->points);

@@ -27,6 +27,7 @@ struct camber_features {
     camber_context *context;
     const camber_schema *schema; /* the schema of the style */
     const camber_style *style;   /* the style that draws the features; readers know only its schema */
+    size_t restyles;             /* how often it was replaced */
 
     /* Web Mercator world coordinates: pairs x, y from 0 to 1; the origin is the north-west corner, y grows southwards.
      */
@@ -90,6 +91,8 @@ camber_status camber_features_create_for(camber_context *context, const camber_s
 /* Whether reading the same files for another style would give the same set, because all features are from files and the
  * other style reads the same features and properties from them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
+/* Returns a hash that changes when features are read, or the style, its sprites or its fonts are replaced. */
+uint64_t camber_features_key(const camber_features *features);
 /* Frees the points of the lines, which take most of a set's memory. Call this after the set's last scene was made,
  * because no other scene can be made or moved afterwards, and no file can be read. */
 void camber_features_release_points(camber_features *features);

@@ -1,5 +1,6 @@
-/* A back end provides a table of functions, and handles that only it can interpret. The OpenCL back end is in opencl/.
- * To add another, make another folder and add a line to the list in find.c. Only files in gpu/ include this header. */
+/* A back end provides a table of functions, and handles that only it can interpret. opencl/ and
+ * cpu/ are back ends. To add another, make another folder and add a line to the list in find.c. Only files in gpu/
+ * include this header. */
 #ifndef CAMBER_GPU_BACKEND_H
 #define CAMBER_GPU_BACKEND_H
 
@@ -28,6 +29,7 @@ struct camber_buffer {
 
 /* Functions that return a status log why they failed. */
 typedef struct camber_gpu_backend {
+    bool counts_memory; /* buffers are made by the context's allocator, which counts them in the run's budget */
     /* Fails if the drivers would end the process when they are first called. */
     camber_status (*check_process)(camber_context *context);
     /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
@@ -35,8 +37,9 @@ typedef struct camber_gpu_backend {
     /* Logs a call that failed during the search, and returns the status for its error code. */
     camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
     /* Sets device->native and the fields that only the back end knows: rounds_correctly, host_memory, gl_context, and
-     * lanes if they are 0. close is called even if this failed. */
-    camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl);
+     * lanes if they are 0; also info.compute_units, if the desc's threads decide it. close is called even if this
+     * failed. */
+    camber_status (*open)(camber_device *device, const camber_found_device *found, const camber_device_desc *desc);
     void (*close)(camber_device *device);
     /* These two fail without a message unless is_told. */
     camber_status (*finish)(const camber_device *device, bool is_told);
@@ -44,6 +47,7 @@ typedef struct camber_gpu_backend {
 
     camber_status (*make_buffer)(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                  const void *bytes, void **native);
+    /* NULL if no device of the back end shares buffers with GL (device->gl_context). */
     camber_status (*make_gl_buffer)(const camber_device *device, unsigned gl_name, void **native);
     void (*release_buffer)(void *native);
     camber_status (*write)(const camber_device *device, void *native, const camber_byte_range *range, const void *bytes,
@@ -51,6 +55,7 @@ typedef struct camber_gpu_backend {
     camber_status (*read)(const camber_device *device, void *native, size_t size_bytes, void *bytes);
     camber_status (*map)(const camber_device *device, void *native, camber_map_access access, size_t size_bytes,
                          void **bytes);
+    /* NULL as make_gl_buffer. */
     camber_status (*acquire_gl)(const camber_device *device, void *const *natives, size_t count);
     camber_status (*release_gl)(const camber_device *device, void *const *natives, size_t count);
 
@@ -64,7 +69,7 @@ typedef struct camber_gpu_backend {
     double (*end_event)(camber_event *event); /* returns how long its command ran, in ms, and releases the event */
 } camber_gpu_backend;
 
-extern const camber_gpu_backend camber_opencl;
+extern const camber_gpu_backend camber_opencl, camber_cpu;
 
 /* find.c: fails if the drivers, when first called, would end the process or not fit into its memory. */
 camber_status camber_check_drivers(camber_context *context);

@@ -28,7 +28,7 @@ static void give_bytes(const camber_device *device, camber_buffer *buffer) {
 
 camber_status camber_buffer_create(const camber_device *device, camber_buffer_kind kind, size_t size_bytes,
                                    const void *bytes, camber_buffer **buffer) {
-    const bool counts = device->host_memory && kind < CAMBER_BUFFER_BORROWED;
+    const bool counts = device->host_memory && kind < CAMBER_BUFFER_BORROWED && !device->backend->counts_memory;
     camber_status status;
     camber_buffer *made = take_bytes(device, counts ? size_bytes : 0, &status);
     if (!made)

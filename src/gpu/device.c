@@ -14,8 +14,12 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
+static bool has_kernels(const camber_device_info *info, const camber_device_desc *desc) {
+    return !info->fixed_kernels || (desc->work_group_size == 0 && desc->lanes == 0);
+}
+
 /* Picks the best matching device: a GPU, else a CPU, else any other. If number is not 0, picks the number-th matching
- * device. */
+ * device. A device without kernels for the desc's work-groups and lanes is passed over. */
 static camber_status choose_device(camber_device *device, const camber_device_desc *desc, camber_found_device *chosen) {
     const char *match = desc->match;
     const uint32_t number = desc->number;
@@ -31,15 +35,25 @@ static camber_status choose_device(camber_device *device, const camber_device_de
     char names[1024] = "";
     uint32_t seen = 0;
     int best = -1;
+    bool lacks_kernels = false;
     for (size_t i = 0; i < count; i++) {
         const camber_device_info info = found[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
         if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
+        if (!has_kernels(&info, desc)) {
+            lacks_kernels = true;
+            continue;
+        }
         best = rank(&info);
         *chosen = found[i];
     }
+    if (best < 0 && lacks_kernels)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                           "no kernels were compiled for work-groups of %u points and %u lanes; ask for 0 of both, or "
+                           "for an OpenCL device; there are: %s",
+                           desc->work_group_size, desc->lanes, names);
     if (best < 0 && number)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
                            "no OpenCL device number %u matches '%s'; there are: %s", number, match ? match : "", names);
@@ -54,8 +68,7 @@ enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 /* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* Sets the work-group size, the lanes and the largest buffer from the limits of the desc and of the device. */
-static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc) {
+static camber_status check_bounds(const camber_device *device, const camber_device_desc *desc) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
@@ -71,6 +84,12 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "%llu bytes of memory for meshes; it must be %d or more, or 0 for what the device has",
                            (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
+    return CAMBER_OK;
+}
+
+/* Sets the work-group size, the lanes and the largest buffer from the limits of the desc and of the device. */
+static void apply_bounds(camber_device *device, const camber_device_desc *desc) {
+    const uint32_t size = desc->work_group_size;
     device->block = size ? size : CAMBER_BLOCK;
     device->point_chunk = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_POINT_CHUNK;
     device->lanes = desc->lanes;
@@ -81,7 +100,6 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
         *largest = desc->gl.largest_buffer_bytes;
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
-    return CAMBER_OK;
 }
 
 /* Sets the memory limit for meshes. If the desc gives none, a device with memory of its own keeps a quarter of it for
@@ -99,15 +117,17 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     camber_found_device found = {0};
     made->context = context;
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
-    camber_status status = camber_check_drivers(context);
+    camber_status status = check_bounds(made, &full);
+    if (status == CAMBER_OK)
+        status = camber_check_drivers(context);
     if (status == CAMBER_OK)
         status = choose_device(made, &full, &found);
     made->backend = found.backend;
     made->info = found.info;
-    if (status == CAMBER_OK)
-        status = apply_bounds(made, &full);
-    if (status == CAMBER_OK && found.backend)
-        status = found.backend->open(made, &found, &full.gl);
+    if (status == CAMBER_OK) {
+        apply_bounds(made, &full);
+        status = found.backend->open(made, &found, &full);
+    }
     if (status == CAMBER_OK)
         bound_memory(made, &full);
     if (status != CAMBER_OK) {
@@ -121,17 +141,8 @@ camber_status camber_device_create(camber_context *context, const camber_device_
 void camber_device_destroy(camber_device *device) {
     if (!device)
         return;
-    for (int has_arc_length = 0; has_arc_length < 2; has_arc_length++) {
-        for (int kind = 0; kind < 6; kind++)
-            camber_program_destroy(device, device->programs[has_arc_length][kind / 3][kind % 3]);
-        for (int pitched = 0; pitched < 2; pitched++)
-            camber_program_destroy(device, device->network_programs[has_arc_length][pitched]);
-    }
-    camber_program_destroy(device, device->arc_length_program);
-    for (size_t i = 0; i < 2; i++)
-        camber_program_destroy(device, device->offset_programs[i]);
-    for (size_t i = 0; i < sizeof device->raster_programs / sizeof *device->raster_programs; i++)
-        camber_program_destroy(device, device->raster_programs[i]);
+    for (size_t i = 0; i < CAMBER_PROGRAM_COUNT; i++)
+        camber_program_destroy(device, device->programs[i]);
     if (device->backend)
         device->backend->close(device);
     camber_free(device->context, device);

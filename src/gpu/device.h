@@ -4,6 +4,7 @@
 #define CAMBER_GPU_DEVICE_H
 
 #include "base/base.h"
+#include "gpu/programs.h"
 
 /* Returns CAMBER_ERROR_DEVICE in a child that was forked after drivers were set up: their threads exist only in the
  * parent, and a call would wait for them for ever. */
@@ -21,12 +22,7 @@ struct camber_device {
     size_t block;       /* points per work-group: the CAMBER_BLOCK that its kernels are built with */
     size_t point_chunk; /* points per work-item: CAMBER_POINT_CHUNK */
     unsigned lanes;     /* lanes of the rasterizer's vectors: CAMBER_LANES */
-    /* Programs, each NULL until it is first used. */
-    struct camber_program *programs[2][2][3];      /* [has arc lengths][has round limits][camber_method] */
-    struct camber_program *network_programs[2][2]; /* [has arc lengths][the camera has a pitch] */
-    struct camber_program *arc_length_program;
-    struct camber_program *offset_programs[2]; /* [has arc lengths] */
-    struct camber_program *raster_programs[4]; /* the rasterizer: [bits of its variant] */
+    struct camber_program *programs[CAMBER_PROGRAM_COUNT]; /* each NULL until it is first used */
     /* The memory limit for its meshes (0: none), the bytes that they hold now, and the most bytes that they and
      * renderers have held. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;

@@ -11,7 +11,13 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-static const camber_gpu_backend *const backends[] = {&camber_opencl};
+/* If two devices are of the same kind, the first is preferred. */
+static const camber_gpu_backend *const backends[] = {
+#ifdef CAMBER_CPU
+    &camber_cpu,
+#endif
+    &camber_opencl,
+};
 enum { BACKENDS = sizeof backends / sizeof *backends };
 
 /* The only lock for the whole process. It guards global state: the OpenCL loader and the drivers set themselves up when
@@ -86,7 +92,8 @@ bool camber_device_matches(const camber_device_info *info, const char *match) {
         return info->type == CAMBER_DEVICE_TYPE_CPU;
     if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
         return info->type == CAMBER_DEVICE_TYPE_GPU;
-    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match);
+    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match) ||
+           contains_ignoring_case(info->version, match);
 }
 
 camber_status camber_device_list(camber_context *context, const char *match, size_t n,

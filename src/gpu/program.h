@@ -6,6 +6,7 @@
 
 /* One program. Only the kernels of its kind are set; the others are NULL. */
 typedef struct camber_program {
+    camber_program_number number;
     void *native;                          /* the back end's handle */
     camber_kernel *classify, *scan, *emit; /* kernels of a tessellation method */
     camber_kernel *cull_count, *cull_emit; /* kernels of networks: which points a camera sees */
@@ -18,7 +19,7 @@ typedef struct camber_program {
 
 /* The source of a program, from which a back end makes it. */
 typedef struct camber_program_source {
-    const char *name; /* name for the log */
+    camber_program_number number; /* by which a back end finds what was compiled ahead of time */
     const char *text;
     size_t text_bytes;
     char options[256];

@@ -31,26 +31,25 @@ void camber_collision_free(camber_collision *collision) {
 /* ---- Shapes ---- */
 
 static bool circles_meet(const camber_obstacle *a, const camber_obstacle *b) {
-    const double dx = 0.5 * ((double)a->x0 + (double)a->x1 - (double)b->x0 - (double)b->x1);
-    const double dy = 0.5 * ((double)a->y0 + (double)a->y1 - (double)b->y0 - (double)b->y1);
-    const double reach = (double)a->radius + (double)b->radius;
+    const double dx = 0.5 * (a->x0 + a->x1 - b->x0 - b->x1);
+    const double dy = 0.5 * (a->y0 + a->y1 - b->y0 - b->y1);
+    const double reach = a->radius + b->radius;
     return dx * dx + dy * dy < reach * reach;
 }
 
 static bool circle_meets_box(const camber_obstacle *circle, const camber_obstacle *box) {
-    const double x = 0.5 * ((double)circle->x0 + (double)circle->x1),
-                 y = 0.5 * ((double)circle->y0 + (double)circle->y1);
-    const double dx = x - fmin(fmax(x, (double)box->x0), (double)box->x1);
-    const double dy = y - fmin(fmax(y, (double)box->y0), (double)box->y1);
-    return dx * dx + dy * dy <= (double)circle->radius * (double)circle->radius;
+    const double x = 0.5 * (circle->x0 + circle->x1), y = 0.5 * (circle->y0 + circle->y1);
+    const double dx = x - fmin(fmax(x, box->x0), box->x1);
+    const double dy = y - fmin(fmax(y, box->y0), box->y1);
+    return dx * dx + dy * dy <= circle->radius * circle->radius;
 }
 
 bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b) {
     if (!(a->x0 <= b->x1 && a->x1 >= b->x0 && a->y0 <= b->y1 && a->y1 >= b->y0))
         return false;
-    if (a->radius > 0.0f)
-        return b->radius > 0.0f ? circles_meet(a, b) : circle_meets_box(a, b);
-    return b->radius > 0.0f ? circle_meets_box(b, a) : true;
+    if (a->radius > 0.0)
+        return b->radius > 0.0 ? circles_meet(a, b) : circle_meets_box(a, b);
+    return b->radius > 0.0 ? circle_meets_box(b, a) : true;
 }
 
 /* Whether a new label may cover a label that is already there. */
@@ -70,16 +69,14 @@ static size_t cell_of(double offset, double cell, size_t count) {
 }
 
 static cell_range cells_of(const camber_collision *c, const camber_obstacle *shape) {
-    return (cell_range){cell_of((double)shape->x0 - c->bounds.x0, c->cell, c->columns),
-                        cell_of((double)shape->y0 - c->bounds.y0, c->cell, c->rows),
-                        cell_of((double)shape->x1 - c->bounds.x0, c->cell, c->columns),
-                        cell_of((double)shape->y1 - c->bounds.y0, c->cell, c->rows)};
+    return (cell_range){
+        cell_of(shape->x0 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y0 - c->bounds.y0, c->cell, c->rows),
+        cell_of(shape->x1 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y1 - c->bounds.y0, c->cell, c->rows)};
 }
 
 bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape) {
     const camber_box *b = &collision->bounds;
-    return (double)shape->x1 >= b->x0 && (double)shape->x0 < b->x1 && (double)shape->y1 >= b->y0 &&
-           (double)shape->y0 < b->y1;
+    return shape->x1 >= b->x0 && shape->x0 < b->x1 && shape->y1 >= b->y0 && shape->y0 < b->y1;
 }
 
 bool camber_collision_hits(const camber_collision *collision, const camber_obstacle *shape,

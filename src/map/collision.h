@@ -7,8 +7,8 @@
 
 /* A box, or a circle about its middle. */
 typedef struct camber_obstacle {
-    float x0, y0, x1, y1;
-    float radius; /* 0: a box */
+    double x0, y0, x1, y1;
+    double radius; /* 0: a box */
 } camber_obstacle;
 
 typedef struct camber_grid_entry {

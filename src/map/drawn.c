@@ -36,6 +36,24 @@ bool camber_plan_draws(const camber_features *features, const camber_feature_cla
     return any;
 }
 
+static bool labels_at(const camber_features *features, const camber_feature_class *class, double zoom) {
+    for (size_t i = 0; i < features->style->layer_count; i++)
+        if (camber_plan_labels(features, features->style->layers + i, zoom, class))
+            return true;
+    return false;
+}
+
+/* Whether features of the class have labels at any of the zooms, if labels are drawn. */
+static bool labels(const camber_features *features, const camber_feature_class *class, double min_zoom,
+                   double max_zoom) {
+    if (!features->fonts || !camber_geometry_is_label(class->geometry))
+        return false;
+    bool any = labels_at(features, class, max_zoom);
+    for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
+        any = labels_at(features, class, zoom);
+    return any;
+}
+
 /* ---- The box ---- */
 
 static void add_polyline(const camber_features *features, size_t polyline, double shift, camber_box *box) {
@@ -59,7 +77,8 @@ camber_status camber_plan_drawn_box(const camber_features *features, double min_
     if (!drawn)
         return CAMBER_ERROR_MEMORY;
     for (size_t c = 0; c < features->class_count; c++)
-        drawn[c] = camber_plan_draws(features, features->classes + c, min_zoom, max_zoom);
+        drawn[c] = camber_plan_draws(features, features->classes + c, min_zoom, max_zoom) ||
+                   labels(features, features->classes + c, min_zoom, max_zoom);
     for (size_t p = 0; p < features->polyline_count && features->points; p++) {
         if (!drawn[features->feature_class[features->polyline_feature[p]]])
             continue;

@@ -9,35 +9,14 @@
  * Main idea: a text runs with the line, or against it if it would be upside down. Each cluster of glyphs is turned as a
  * whole about its middle, which is on the line. If the line is steep, texts that may be written downwards are. */
 #include "map/label_layout.h"
+#include "text/clusters.h"
 
 #include <math.h>
-
-/* How far the middle of a glyph that is upright in a downward line is above its baseline, em. */
-static const double UPRIGHT_MIDDLE_EM = 0.38;
-
-double camber_label_cluster_middle(const camber_text *text, size_t first, double letter_spacing_em, size_t *end) {
-    const camber_text_glyph *g = text->glyphs;
-    double low = INFINITY, high = -INFINITY;
-    size_t i = first + 1;
-    while (i < text->glyph_count && g[i].run == g[first].run && g[i].byte == g[first].byte)
-        i++;
-    for (size_t k = first; k < i; k++) {
-        double from = (double)(text->vertical ? g[k].y : g[k].x);
-        double to = from + fmax((double)g[k].advance - (k + 1 == i ? letter_spacing_em : 0.0), 0.0);
-        if (text->vertical && !g[k].turned && g[k].glyph != CAMBER_NO_GLYPH) {
-            from -= (UPRIGHT_MIDDLE_EM + 0.5) * (double)g[k].scale;
-            to = from + (double)g[k].scale;
-        }
-        low = fmin(low, from);
-        high = fmax(high, to);
-    }
-    *end = i;
-    return 0.5 * (low + high);
-}
 
 /* The line in the space in which the text is placed: the plane, or the picture as a pitch shows it. */
 typedef struct text_line {
     const camber_label_layout *layout;
+    double origin[2]; /* the points are relative to it */
     const float *points;
     size_t count;
     double translate[2];
@@ -55,7 +34,8 @@ static bool set_point(const text_line *line, const double plane[2], double at[2]
 }
 
 static bool line_point(const text_line *line, size_t i, double at[2]) {
-    const double plane[2] = {(double)line->points[2 * i], (double)line->points[2 * i + 1]};
+    const double plane[2] = {line->origin[0] + (double)line->points[2 * i],
+                             line->origin[1] + (double)line->points[2 * i + 1]};
     return set_point(line, plane, at);
 }
 
@@ -105,10 +85,10 @@ static void turn_round(double *points, size_t count) {
 /* Lays the track along the line. with: it runs in the order of the stored points. CAMBER_ERROR_NOT_FOUND: the line is
  * too short. */
 static camber_status lay(camber_label_track *track, const text_line *line, const camber_label_candidate *c, bool with) {
-    const double plane[2] = {c->x, c->y};
-    double at[2];
+    double base[2], at[2];
     track->count = 0;
-    if (!set_point(line, plane, at))
+    camber_label_base(line->layout, c, base);
+    if (!set_point(line, base, at))
         return CAMBER_ERROR_NOT_FOUND;
     if (!push(track, at, 0.0))
         return CAMBER_ERROR_MEMORY;
@@ -121,10 +101,10 @@ static camber_status lay(camber_label_track *track, const text_line *line, const
 }
 
 /* Measures the text: where its first and last clusters are. */
-static void measure(const camber_label_rule *rule, const camber_text *text, camber_label_track *track) {
+static void measure(const camber_text *text, camber_label_track *track) {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0, end; i < text->glyph_count; i = end) {
-        const double middle = camber_label_cluster_middle(text, i, rule->symbol.letter_spacing_em, &end);
+        const double middle = camber_text_cluster_middle(text, i, &end);
         low = fmin(low, middle);
         high = fmax(high, middle);
     }
@@ -166,7 +146,7 @@ static camber_status set_text(const camber_label_layout *layout, const camber_la
     track->side = turned ? -1.0 : 1.0;
     track->shift = track->side * rule->offsets_em[0][0] * track->size;
     track->across = rule->offsets_em[0][1] * track->size;
-    measure(rule, track->vertical && form->vertical ? form->vertical : form->text, track);
+    measure(track->vertical && form->vertical ? form->vertical : form->text, track);
     return lay(track, line, c, layout->lines[c->line].reversed == turned);
 }
 
@@ -175,7 +155,10 @@ camber_status camber_label_track_find(const camber_label_layout *layout, const c
     const camber_label_form *form = layout->forms + c->form;
     const camber_label_rule *rule = layout->rules + form->rule;
     const camber_label_line *stored = layout->lines + c->line;
+    double base[2];
+    camber_label_base(layout, c, base);
     const text_line line = {.layout = layout,
+                            .origin = {base[0] + c->line_x, base[1] + c->line_y},
                             .points = layout->line_points + 2 * stored->first,
                             .count = stored->count,
                             .translate = {rule->text_translate_px[0], rule->text_translate_px[1]},

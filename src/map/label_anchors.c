@@ -96,7 +96,7 @@ static camber_status search_segment(anchor_series *series, size_t i) {
     const double low = fmax(from + share[0] * (to - from), 0.5 * series->rule->label_length);
     const double high = fmin(from + share[1] * (to - from), length_of(path) - 0.5 * series->rule->label_length);
     for (double k = fmax(floor((low - series->offset) / series->spacing) - 1.0, 0.0);; k += 1.0) {
-        const camber_path_anchor anchor = {series->offset + k * series->spacing, i};
+        const camber_path_anchor anchor = {series->offset + k * series->spacing, i, k};
         if (!(anchor.along < to) || anchor.along > high + series->spacing)
             return CAMBER_OK;
         if (anchor.along < from)

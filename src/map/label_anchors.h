@@ -14,6 +14,7 @@ typedef struct camber_label_path {
 typedef struct camber_path_anchor {
     double along;
     size_t segment; /* of the path: the number of its first point */
+    double number;  /* of the anchor, counted from the path's beginning, also if earlier ones are left out */
 } camber_path_anchor;
 
 typedef struct camber_path_anchors {

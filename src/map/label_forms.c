@@ -154,6 +154,7 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
     made.symbol.icon_image = NULL;
     made.symbol.section_count = 0;
     made.symbol.sort_key = 0.0;
+    made.hash = camber_hash(CAMBER_HASH_START, &made.symbol, sizeof made.symbol);
     camber_status status = make_rule(layout, symbol, &made);
     const camber_label_look look = icon && icon->sdf ? look_of(&symbol->icon, made.icon_flat, layout->view->ratio)
                                                      : plain_look(&symbol->icon, made.icon_flat);

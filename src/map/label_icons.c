@@ -161,21 +161,55 @@ static camber_status make_form(camber_context *context, camber_icon_form *form) 
     return icon->sdf ? make_outline(context, &x, &y, form) : make_image(context, &x, &y, form);
 }
 
+static uint64_t hash_of(const camber_icon_form *form) {
+    return camber_mix(camber_mix(camber_mix(0, (uintptr_t)form->icon), form->width), form->height);
+}
+
+/* Finds the slot of an equal form, or the free slot where it would be. */
+static uint32_t *find_slot(const camber_icon_forms *f, const camber_icon_form *form) {
+    size_t at = (size_t)hash_of(form) & (f->slot_count - 1);
+    for (; f->slots[at]; at = (at + 1) & (f->slot_count - 1)) {
+        const camber_icon_form *other = f->forms + f->slots[at] - 1;
+        if (other->icon == form->icon && other->width == form->width && other->height == form->height)
+            break;
+    }
+    return f->slots + at;
+}
+
+/* Makes room for one more form. */
+static bool reserve(camber_icon_forms *f) {
+    if (!camber_grow(f->context, &f->forms, &f->capacity, f->count + 1, sizeof *f->forms))
+        return false;
+    if (2 * (f->count + 1) <= f->slot_count)
+        return true;
+    const size_t count = f->slot_count ? 2 * f->slot_count : 64;
+    uint32_t *slots = camber_alloc_zero(f->context, count, sizeof *slots);
+    if (!slots)
+        return false;
+    camber_free(f->context, f->slots);
+    f->slots = slots;
+    f->slot_count = count;
+    for (size_t i = 0; i < f->count; i++)
+        *find_slot(f, f->forms + i) = (uint32_t)i + 1;
+    return true;
+}
+
 camber_status camber_icon_forms_find(camber_icon_forms *f, const camber_label_item *item, size_t *index) {
     const uint32_t width = side_of(hypotf(item->xx, item->yx), item->unstretched_px, item->icon->width);
     const uint32_t height = side_of(hypotf(item->xy, item->yy), item->unstretched_px, item->icon->height);
-    for (*index = 0; *index < f->count; ++*index) {
-        const camber_icon_form *form = f->forms + *index;
-        if (form->icon == item->icon && form->width == width && form->height == height)
-            return CAMBER_OK;
-    }
-    if (!camber_grow(f->context, &f->forms, &f->capacity, f->count + 1, sizeof *f->forms))
+    camber_icon_form form = {.icon = item->icon, .width = width, .height = height};
+    if (!reserve(f))
         return CAMBER_ERROR_MEMORY;
-    camber_icon_form *form = f->forms + f->count;
-    *form = (camber_icon_form){.icon = item->icon, .width = width, .height = height};
-    const camber_status status = make_form(f->context, form);
-    f->count += status == CAMBER_OK;
-    return status;
+    uint32_t *slot = find_slot(f, &form);
+    if (!*slot) {
+        const camber_status status = make_form(f->context, &form);
+        if (status != CAMBER_OK)
+            return status;
+        f->forms[f->count] = form;
+        *slot = (uint32_t)++f->count;
+    }
+    *index = *slot - 1;
+    return CAMBER_OK;
 }
 
 void camber_icon_forms_free(camber_icon_forms *f) {
@@ -183,7 +217,9 @@ void camber_icon_forms_free(camber_icon_forms *f) {
         camber_free(f->context, (void *)f->forms[i].image.rgba);
         camber_free(f->context, f->forms[i].outline_block);
     }
-    if (f->context)
+    if (f->context) {
         camber_free(f->context, f->forms);
+        camber_free(f->context, f->slots);
+    }
     *f = (camber_icon_forms){0};
 }

@@ -17,6 +17,8 @@ typedef struct camber_icon_forms {
     camber_context *context;
     camber_icon_form *forms; /* count of them */
     size_t count, capacity;
+    uint32_t *slots; /* a hash table of their numbers + 1; slot_count is a power of two */
+    size_t slot_count;
 } camber_icon_forms;
 
 /* Finds the form that an item needs, or makes it; *index is its number. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT

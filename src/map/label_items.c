@@ -2,6 +2,7 @@
  *
  * Input: candidates after placement. Output: for each glyph and icon, how it is drawn in the picture. */
 #include "map/label_layout.h"
+#include "text/clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,10 +11,12 @@
 typedef struct item_maker {
     camber_label_layout *layout;
     camber_labels *labels;
-    size_t item_capacity, label_capacity, word_capacity;
     uint32_t *run_bytes; /* where the runs of the current label's text begin in the labels' words */
-    size_t run_capacity;
+    size_t run_capacity, word_capacity;
+    size_t item_capacity, label_capacity;
     camber_label_track track;
+    camber_text_glyph *glyphs; /* of a text whose lines are justified for its anchor */
+    size_t glyph_capacity;
 } item_maker;
 
 /* ---- The order in which labels are drawn ---- */
@@ -32,6 +35,8 @@ static int compare(const void *a, const void *b) {
         return c->rank < d->rank ? -1 : 1;
     if (c->x < d->x || c->x > d->x)
         return c->x < d->x ? -1 : 1;
+    if (c->y < d->y || c->y > d->y)
+        return c->y < d->y ? -1 : 1;
     return c < d ? -1 : c > d;
 }
 
@@ -80,16 +85,38 @@ static camber_status add_item(item_maker *m, const camber_label_item *item) {
     return CAMBER_OK;
 }
 
+/* Returns where a point of a candidate's label is in the picture. In a domain the result is the same in all pictures,
+ * but for the whole px between them. */
+static double place_in_picture(const camber_label_layout *l, double anchor, double away, size_t axis) {
+    const camber_label_window *window = l->window;
+    if (!window)
+        return away;
+    return camber_label_snap((anchor + camber_label_snap(away)) * window->scale) - window->origin_px[axis];
+}
+
 /* Sets an item's matrix so that it draws a box, or an em, whose top left corner, or origin, is at this point of the
  * frame. turned: it is turned clockwise by 90 degrees. */
-static void set_matrix(camber_label_item *item, const camber_label_frame *f, const double at[2], const double size[2],
-                       bool turned) {
-    item->x = (float)(f->x + f->xx * at[0] + f->xy * at[1]);
-    item->y = (float)(f->y + f->yx * at[0] + f->yy * at[1]);
-    item->xx = (float)((turned ? f->xy : f->xx) * size[0]);
-    item->yx = (float)((turned ? f->yy : f->yx) * size[0]);
-    item->xy = (float)((turned ? -f->xx : f->xy) * size[1]);
-    item->yy = (float)((turned ? -f->yx : f->yy) * size[1]);
+static void set_matrix(const item_maker *m, const camber_label_candidate *c, camber_label_item *item,
+                       const camber_label_frame *f, const double at[2], const double size[2], bool turned) {
+    const double scale = m->layout->window ? m->layout->window->scale : 1.0;
+    item->x = (float)place_in_picture(m->layout, c->x, f->x + f->xx * at[0] + f->xy * at[1], 0);
+    item->y = (float)place_in_picture(m->layout, c->y, f->y + f->yx * at[0] + f->yy * at[1], 1);
+    item->xx = (float)((turned ? f->xy : f->xx) * size[0] * scale);
+    item->yx = (float)((turned ? f->yy : f->yx) * size[0] * scale);
+    item->xy = (float)((turned ? -f->xx : f->xy) * size[1] * scale);
+    item->yy = (float)((turned ? -f->yx : f->yy) * size[1] * scale);
+}
+
+/* Puts an image whose px are as large as the picture's onto whole px, so that it is as sharp as it was made. Browsers
+ * draw such images from the nearest px, with the same result. */
+static void snap_image(const camber_label_layout *layout, camber_label_item *item) {
+    const camber_sprite_image *icon = item->icon;
+    const float across = item->xx - (float)icon->width, down = item->yy - (float)icon->height;
+    if (icon->sdf || layout->lens.pitched || !(fmaxf(fabsf(across), fabsf(down)) < 1.0f / 64.0f) ||
+        !(fmaxf(fabsf(item->xy), fabsf(item->yx)) < 1.0f / 64.0f))
+        return;
+    item->x = floorf(item->x + 0.5f);
+    item->y = floorf(item->y + 0.5f);
 }
 
 static camber_status add_icon(item_maker *m, const camber_label_candidate *c, uint32_t label) {
@@ -100,15 +127,18 @@ static camber_status add_icon(item_maker *m, const camber_label_candidate *c, ui
     const camber_box box = camber_label_icon_box(l, c, c->vertical, c->anchor);
     const double at[2] = {box.x0, box.y0}, size[2] = {box.x1 - box.x0, box.y1 - box.y0};
     camber_label_item item = {.glyph = CAMBER_NO_GLYPH, .icon = form->icon, .look = rule->icon_look, .label = label};
-    set_matrix(&item, &frame, at, size, false);
+    set_matrix(m, c, &item, &frame, at, size, false);
+    snap_image(l, &item);
     if (rule->symbol.text_fit != CAMBER_FIT_NONE && form->text)
-        item.unstretched_px = (float)(l->view->ratio / form->icon->pixel_ratio * hypot(frame.xx, frame.yx));
+        item.unstretched_px = (float)(l->view->ratio * (l->window ? l->window->scale : 1.0) / form->icon->pixel_ratio *
+                                      hypot(frame.xx, frame.yx));
     return add_item(m, &item);
 }
 
 /* Adds a glyph or an image of a text. at: its origin in the frame, px. */
-static camber_status add_glyph(item_maker *m, const camber_label_form *form, const camber_text_glyph *g,
+static camber_status add_glyph(item_maker *m, const camber_label_candidate *c, const camber_text_glyph *g,
                                const camber_label_frame *frame, const double at[2], uint32_t label) {
+    const camber_label_form *form = m->layout->forms + c->form;
     const camber_label_run *run = m->layout->runs + form->first_run + g->run;
     const double em = m->layout->rules[form->rule].text_px * (double)g->scale;
     double size[2] = {em, em};
@@ -122,7 +152,7 @@ static camber_status add_glyph(item_maker *m, const camber_label_form *form, con
         size[0] = run->image->width * scale;
         size[1] = run->image->height * scale;
     }
-    set_matrix(&item, frame, at, size, g->turned);
+    set_matrix(m, c, &item, frame, at, size, g->turned);
     return add_item(m, &item);
 }
 
@@ -144,18 +174,24 @@ static camber_status add_text(item_maker *m, const camber_label_candidate *c, ui
     const camber_label_form *form = m->layout->forms + c->form;
     const camber_label_rule *rule = m->layout->rules + form->rule;
     const camber_label_frame frame = camber_label_text_frame(m->layout, c);
-    camber_text *text = c->vertical ? form->vertical : form->text;
+    camber_text text = *(c->vertical ? form->vertical : form->text);
     double shift[2];
     camber_label_text_shift(m->layout, c, c->vertical, c->anchor, shift);
-    if (rule->variable && !c->vertical && text->line_count > 1)
-        camber_text_place(text, CAMBER_ANCHOR_CENTER,
+    if (rule->variable && !c->vertical && text.line_count > 1) {
+        /* A copy, because other labels show the same text. */
+        if (!camber_grow(m->layout->context, &m->glyphs, &m->glyph_capacity, text.glyph_count, sizeof *m->glyphs))
+            return CAMBER_ERROR_MEMORY;
+        memcpy(m->glyphs, text.glyphs, text.glyph_count * sizeof *m->glyphs);
+        text.glyphs = m->glyphs;
+        camber_text_place(&text, CAMBER_ANCHOR_CENTER,
                           rule->symbol.justify == CAMBER_JUSTIFY_AUTO ? justify_for(rule->anchors[c->anchor])
                                                                       : rule->symbol.justify);
+    }
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < text->glyph_count && status == CAMBER_OK; i++) {
-        const camber_text_glyph *g = text->glyphs + i;
+    for (size_t i = 0; i < text.glyph_count && status == CAMBER_OK; i++) {
+        const camber_text_glyph *g = text.glyphs + i;
         const double at[2] = {(double)g->x * rule->text_px + shift[0], (double)g->y * rule->text_px + shift[1]};
-        status = add_glyph(m, form, g, &frame, at, label);
+        status = add_glyph(m, c, g, &frame, at, label);
     }
     return status;
 }
@@ -197,13 +233,13 @@ static camber_status add_along(item_maker *m, const camber_label_candidate *c, u
     const bool down = m->track.vertical;
     const camber_text *text = down ? form->vertical : form->text;
     for (size_t i = 0, end; i < text->glyph_count && status == CAMBER_OK; i = end) {
-        const double middle = camber_label_cluster_middle(text, i, rule->symbol.letter_spacing_em, &end);
+        const double middle = camber_text_cluster_middle(text, i, &end);
         const camber_label_frame frame = frame_on(m, rule, middle * m->track.size + m->track.shift);
         for (size_t k = i; k < end && status == CAMBER_OK; k++) {
             const camber_text_glyph *g = text->glyphs + k;
             const double at[2] = {((double)g->x - (down ? 0.0 : middle)) * rule->text_px,
                                   ((double)g->y - (down ? middle : 0.0)) * rule->text_px};
-            status = add_glyph(m, form, g, &frame, at, label);
+            status = add_glyph(m, c, g, &frame, at, label);
         }
     }
     return status;
@@ -215,7 +251,13 @@ static camber_status add_label(item_maker *m, const camber_label_candidate *c) {
     camber_labels *l = m->labels;
     if (!camber_grow(l->context, &l->labels, &m->label_capacity, l->label_count + 1, sizeof *l->labels))
         return CAMBER_ERROR_MEMORY;
-    l->labels[l->label_count++] = (camber_label){.feature = c->feature, .box = c->box};
+    camber_box box = c->box;
+    const camber_label_window *window = m->layout->window;
+    if (window)
+        box =
+            (camber_box){box.x0 * window->scale - window->origin_px[0], box.y0 * window->scale - window->origin_px[1],
+                         box.x1 * window->scale - window->origin_px[0], box.y1 * window->scale - window->origin_px[1]};
+    l->labels[l->label_count++] = (camber_label){.feature = c->feature, .box = box};
     return CAMBER_OK;
 }
 
@@ -226,9 +268,8 @@ static camber_status add_words(item_maker *m, const camber_label_candidate *c, u
     if (!camber_grow(l->context, &m->run_bytes, &m->run_capacity, (size_t)form->run_count + 1, sizeof *m->run_bytes))
         return CAMBER_ERROR_MEMORY;
     l->labels[label].first_byte = (uint32_t)l->word_size;
-    const char *at = form->words;
+    const char *said = form->words;
     for (uint32_t i = 0; i < form->run_count; i++) {
-        const char *said = camber_label_run_words(&at, i == 0);
         const size_t size = strlen(said);
         m->run_bytes[i] = (uint32_t)l->word_size;
         if (size > UINT32_MAX - l->word_size)
@@ -238,6 +279,7 @@ static camber_status add_words(item_maker *m, const camber_label_candidate *c, u
             return CAMBER_ERROR_MEMORY;
         memcpy(l->words + l->word_size, said, size);
         l->word_size += size;
+        said += size + 1;
     }
     l->labels[label].byte_count = (uint32_t)l->word_size - l->labels[label].first_byte;
     return CAMBER_OK;
@@ -270,6 +312,29 @@ static camber_status make_layer(item_maker *m, const camber_layout_layer *layer,
     return status;
 }
 
+/* Copies the looks that items have; the layout may have more, of other views. Their lengths are those of the layout's
+ * view. */
+static camber_status take_looks(const camber_label_layout *layout, camber_labels *labels) {
+    const float scale = layout->window ? (float)layout->window->scale : 1.0f;
+    uint32_t *numbers = camber_alloc_zero(labels->context, layout->look_count, sizeof *numbers); /* + 1; 0: none yet */
+    labels->looks = camber_alloc(labels->context, layout->look_count, sizeof *labels->looks);
+    if (numbers && labels->looks)
+        for (size_t i = 0; i < labels->item_count; i++) {
+            uint32_t *look = &labels->items[i].look;
+            if (!numbers[*look]) {
+                camber_label_look *made = labels->looks + labels->look_count++;
+                *made = layout->looks[*look];
+                made->halo_width_px *= scale;
+                made->halo_blur_px *= scale;
+                numbers[*look] = (uint32_t)labels->look_count;
+            }
+            *look = numbers[*look] - 1;
+        }
+    const camber_status status = numbers && labels->looks ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_free(labels->context, numbers);
+    return status;
+}
+
 camber_status camber_label_items_make(camber_label_layout *layout, camber_labels *labels) {
     item_maker m = {.layout = layout, .labels = labels, .track.context = layout->context};
     labels->layers = camber_alloc(labels->context, layout->layer_count, sizeof *labels->layers);
@@ -283,10 +348,7 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
         camber_free(layout->context, list);
     }
     camber_free(layout->context, m.track.points);
+    camber_free(layout->context, m.glyphs);
     camber_free(layout->context, m.run_bytes);
-    labels->looks = layout->looks;
-    labels->look_count = layout->look_count;
-    layout->looks = NULL;
-    layout->look_count = layout->look_capacity = 0;
-    return status;
+    return status == CAMBER_OK ? take_looks(layout, labels) : status;
 }

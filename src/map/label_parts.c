@@ -58,14 +58,18 @@ static camber_label_frame make_frame(const camber_label_layout *layout, const do
 
 camber_label_frame camber_label_text_frame(const camber_label_layout *layout, const camber_label_candidate *c) {
     const camber_label_rule *rule = camber_label_rule_of(layout, c);
-    const double plane[2] = {c->x + rule->text_translate_px[0], c->y + rule->text_translate_px[1]};
+    double base[2];
+    camber_label_base(layout, c, base);
+    const double plane[2] = {base[0] + rule->text_translate_px[0], base[1] + rule->text_translate_px[1]};
     const double east[2] = {layout->view->cosine, -layout->view->sine};
     return make_frame(layout, plane, rule->text_by_map ? east : NULL, rule->text_turn, rule->text_flat);
 }
 
 camber_label_frame camber_label_icon_frame(const camber_label_layout *layout, const camber_label_candidate *c) {
     const camber_label_rule *rule = camber_label_rule_of(layout, c);
-    const double plane[2] = {c->x + rule->icon_translate_px[0], c->y + rule->icon_translate_px[1]};
+    double base[2];
+    camber_label_base(layout, c, base);
+    const double plane[2] = {base[0] + rule->icon_translate_px[0], base[1] + rule->icon_translate_px[1]};
     const double east[2] = {layout->view->cosine, -layout->view->sine};
     double turn = rule->icon_turn;
     if (!rule->icon_along || c->line == CAMBER_NO_PATH)

@@ -2,14 +2,13 @@
  *
  * Input: items, which say where glyphs and icons are. Output: rings and passes. Main idea: a glyph's outline is an
  * area, and its halo is a stroke of the same rings with round joins, so that labels are drawn as lines and areas are. A
- * layer's icons come first, then the halos of all its texts, then the texts. */
+ * layer's icons come first, then the halos of all its texts, then the texts. Items that are flat on the map and items
+ * that stand upright in the picture are in passes of their own, of which only the former have the picture's pitch. */
 #include "map/label_shapes.h"
 
 #include <math.h>
 #include <string.h>
 
-/* How far an outline's segments may be from its curves, px. */
-static const double TOLERANCE_PX = 1.0 / 32.0;
 /* A halo's edge fades over its blur times this, as in MapLibre, whose glyphs are distances. */
 static const float BLUR_SCALE = 1.19f;
 /* The largest width of a stroke. */
@@ -34,31 +33,26 @@ static bool begin_ring(rings *r, uint32_t row, size_t points) {
     return true;
 }
 
-/* Moves a point of the picture to where the plane has it. p: x and y in px. The point may be beyond what the camera
- * sees. */
-static void unproject(const camber_view_lens *lens, float p[2]) {
-    const camber_perspective *of = &lens->perspective;
-    const double y = (double)p[1] - lens->half_height, away = fmax(of->cosine + of->fall * y, 1e-3);
-    const double plane_y = y / away;
-    p[0] = (float)(lens->half_width + ((double)p[0] - lens->half_width) * (1.0 - of->fall * plane_y));
-    p[1] = (float)(lens->half_height + plane_y);
+/* Distances from an item's origin are multiples of 1 / STEPS px, so that its points are the same in all pictures that
+ * are whole px apart: floats hold such positions exactly, up to 4096 px. */
+static const float STEPS = 4096.0f;
+
+static float snap(float px) {
+    return fabsf(px) < 2048.0f ? floorf(px * STEPS + 0.5f) / STEPS : px;
 }
 
-/* Finds the point of the plane at which the point u, v of an item is drawn. t: NULL if the item is in the plane. */
-static void find_point(const camber_label_item *item, const camber_view_lens *lens, float u, float v, float p[2]) {
-    p[0] = item->x + item->xx * u + item->xy * v;
-    p[1] = item->y + item->yx * u + item->yy * v;
-    if (lens)
-        unproject(lens, p);
+/* Finds the point at which the point u, v of an item is drawn. */
+static void find_point(const camber_label_item *item, float u, float v, float p[2]) {
+    p[0] = item->x + snap(item->xx * u + item->xy * v);
+    p[1] = item->y + snap(item->yx * u + item->yy * v);
 }
 
-static void add_point(rings *r, const camber_label_item *item, const camber_view_lens *lens, float u, float v) {
-    find_point(item, lens, u, v, r->points + 2 * r->point_count++);
+static void add_point(rings *r, const camber_label_item *item, float u, float v) {
+    find_point(item, u, v, r->points + 2 * r->point_count++);
 }
 
 /* Adds the rings of an outline. Rings of one row form one area. */
-static camber_status add_outline(rings *r, const camber_outline *outline, const camber_label_item *item,
-                                 const camber_view_lens *lens) {
+static camber_status add_outline(rings *r, const camber_outline *outline, const camber_label_item *item) {
     for (size_t i = 0; i < outline->ring_count; i++) {
         const uint32_t first = outline->offsets[i], end = outline->offsets[i + 1];
         if (end - first < 3)
@@ -67,49 +61,45 @@ static camber_status add_outline(rings *r, const camber_outline *outline, const 
             return CAMBER_ERROR_MEMORY;
         for (uint32_t k = first; k <= end; k++) {
             const float *point = outline->points + (size_t)2 * (k < end ? k : first);
-            add_point(r, item, lens, point[0], point[1]);
+            add_point(r, item, point[0], point[1]);
         }
     }
     return CAMBER_OK;
 }
 
-static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item,
-                               const camber_view_lens *lens) {
-    const double size_px = fmax(hypot((double)item->xx, (double)item->yx), hypot((double)item->xy, (double)item->yy));
+static camber_status add_glyph(rings *r, camber_fonts *fonts, const camber_label_item *item) {
+    const float size_px = fmaxf(hypotf(item->xx, item->yx), hypotf(item->xy, item->yy));
     camber_outline outline;
-    if (!(size_px > 0.0))
+    if (!(size_px > 0.0f))
         return CAMBER_OK;
-    const camber_status status =
-        camber_fonts_get_outline(fonts, item->glyph, (float)(TOLERANCE_PX / size_px), &outline);
-    return status == CAMBER_OK ? add_outline(r, &outline, item, lens) : status;
+    const camber_status status = camber_fonts_get_sized_outline(fonts, item->glyph, size_px, &outline);
+    return status == CAMBER_OK ? add_outline(r, &outline, item) : status;
 }
 
 /* ---- Icons ---- */
 
 /* Adds the quadrangle of an icon's image, which has a border around the item's frame. */
-static camber_status add_frame(rings *r, const camber_icon_form *form, const camber_label_item *item,
-                               const camber_view_lens *lens, uint32_t row) {
+static camber_status add_frame(rings *r, const camber_icon_form *form, const camber_label_item *item, uint32_t row) {
     static const float corners[][2] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {0.0f, 0.0f}};
     const float edge_x = 1.0f / (float)form->width, edge_y = 1.0f / (float)form->height;
     if (!begin_ring(r, row, 5))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < 5; i++) {
         const float u = corners[i][0], v = corners[i][1];
-        add_point(r, item, lens, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
+        add_point(r, item, u + (u > 0.5f ? edge_x : -edge_x), v + (v > 0.5f ? edge_y : -edge_y));
     }
     return CAMBER_OK;
 }
 
-/* Places the image in the frame; the fill's pointer to it is set later. In a picture with a pitch, the frame is a
- * quadrangle in the plane, and the image is the rectangle with the same middle axes. */
-static void place_image(const camber_icon_form *form, const camber_label_item *item, const camber_view_lens *lens,
-                        const camber_label_look *look, camber_fill *fill) {
+/* Places the image in the frame; the fill's pointer to it is set later. */
+static void place_image(const camber_icon_form *form, const camber_label_item *item, const camber_label_look *look,
+                        camber_fill *fill) {
     const float half_x = 0.5f + 1.0f / (float)form->width, half_y = 0.5f + 1.0f / (float)form->height;
     float left[2], right[2], top[2], bottom[2];
-    find_point(item, lens, 0.5f - half_x, 0.5f, left);
-    find_point(item, lens, 0.5f + half_x, 0.5f, right);
-    find_point(item, lens, 0.5f, 0.5f - half_y, top);
-    find_point(item, lens, 0.5f, 0.5f + half_y, bottom);
+    find_point(item, 0.5f - half_x, 0.5f, left);
+    find_point(item, 0.5f + half_x, 0.5f, right);
+    find_point(item, 0.5f, 0.5f - half_y, top);
+    find_point(item, 0.5f, 0.5f + half_y, bottom);
     fill->color = look->color;
     fill->width_px = hypotf(right[0] - left[0], right[1] - left[1]);
     fill->height_px = hypotf(bottom[0] - top[0], bottom[1] - top[1]);
@@ -142,8 +132,7 @@ static bool allocate(const camber_labels *labels, camber_label_shapes *s) {
     return (s->strokes = camber_alloc_zero(context, s->look_count + 1, sizeof *s->strokes)) &&
            (s->halos = camber_alloc_zero(context, s->look_count + 1, sizeof *s->halos)) &&
            (s->fills = camber_alloc_zero(context, all + 1, sizeof *s->fills)) &&
-           (s->paints = camber_alloc_zero(context, all + 1, sizeof *s->paints)) &&
-           (s->ranges = camber_alloc_zero(context, labels->layer_count + 1, sizeof *s->ranges));
+           (s->paints = camber_alloc_zero(context, all + 1, sizeof *s->paints));
 }
 
 /* ---- Layers ---- */
@@ -152,52 +141,65 @@ typedef struct shape_maker {
     const camber_labels *labels;
     camber_fonts *fonts;
     camber_label_shapes *shapes;
-    camber_view_lens lens;
     rings texts, icons;
+    size_t range_capacity;
     size_t *form_of; /* by icon */
 } shape_maker;
 
-/* Returns NULL if the item is drawn in the plane as it is. */
-static const camber_view_lens *lens_for(const shape_maker *m, const camber_label_item *item) {
-    return m->lens.pitched && !m->labels->looks[item->look].flat ? &m->lens : NULL;
-}
-
 static camber_status add_icon(shape_maker *m, const camber_label_item *item, camber_label_range *range) {
     camber_label_shapes *s = m->shapes;
-    const camber_view_lens *lens = lens_for(m, item);
     size_t *form = m->form_of + s->icon_count;
     camber_status status = camber_icon_forms_find(&s->forms, item, form);
     if (status != CAMBER_OK)
         return status;
     if (item->icon->sdf) {
         range->has_halo |= s->halos[item->look].width_px > 0.0f;
-        return add_outline(&m->texts, &s->forms.forms[*form].outline, item, lens);
+        return add_outline(&m->texts, &s->forms.forms[*form].outline, item);
     }
     camber_fill *fill = s->fills + s->look_count + s->icon_count;
-    place_image(s->forms.forms + *form, item, lens, m->labels->looks + item->look, fill);
+    place_image(s->forms.forms + *form, item, m->labels->looks + item->look, fill);
     s->paints[s->look_count + s->icon_count].fill = fill;
-    return add_frame(&m->icons, s->forms.forms + *form, item, lens, (uint32_t)s->icon_count++);
+    return add_frame(&m->icons, s->forms.forms + *form, item, (uint32_t)s->icon_count++);
 }
 
-static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) {
+/* Returns the range for an item of a layer: the last one, unless it is of another layer, or lies flat where the item
+ * stands upright. NULL: there is no memory. */
+static camber_label_range *find_range(shape_maker *m, size_t layer, const camber_label_item *item) {
     camber_label_shapes *s = m->shapes;
-    camber_label_range *range = s->ranges + s->range_count++;
+    const bool upright = !m->labels->looks[item->look].flat;
+    camber_label_range *last = s->range_count ? s->ranges + s->range_count - 1 : NULL;
+    if (last && last->layer == layer && last->upright == upright)
+        return last;
+    if (!camber_grow(s->context, &s->ranges, &m->range_capacity, s->range_count + 1, sizeof *s->ranges))
+        return NULL;
+    last = s->ranges + s->range_count++;
+    *last = (camber_label_range){
+        .layer = layer, .upright = upright, .first_icon = m->icons.ring_count, .first_ring = m->texts.ring_count};
+    return last;
+}
+
+static camber_status add_item(shape_maker *m, size_t layer, const camber_label_item *item) {
+    camber_label_range *range = find_range(m, layer, item);
     camber_status status = CAMBER_OK;
-    *range = (camber_label_range){
-        .layer = layer->layer, .first_icon = m->icons.ring_count, .first_ring = m->texts.ring_count};
-    for (size_t i = 0; i < layer->icon_count && status == CAMBER_OK; i++)
-        status = add_icon(m, m->labels->items + layer->first_icon + i, range);
-    for (size_t i = 0; i < layer->glyph_count && status == CAMBER_OK; i++) {
-        const camber_label_item *item = m->labels->items + layer->first_glyph + i;
-        if (item->glyph == CAMBER_NO_GLYPH) { /* an image in a text */
-            status = add_icon(m, item, range);
-            continue;
-        }
-        range->has_halo |= s->halos[item->look].width_px > 0.0f;
-        status = add_glyph(&m->texts, m->fonts, item, lens_for(m, item));
+    if (!range)
+        return CAMBER_ERROR_MEMORY;
+    if (item->glyph == CAMBER_NO_GLYPH) { /* an icon, or an image in a text */
+        status = add_icon(m, item, range);
+    } else {
+        range->has_halo |= m->shapes->halos[item->look].width_px > 0.0f;
+        status = add_glyph(&m->texts, m->fonts, item);
     }
     range->icon_count = m->icons.ring_count - range->first_icon;
     range->ring_count = m->texts.ring_count - range->first_ring;
+    return status;
+}
+
+static camber_status add_layer(shape_maker *m, const camber_label_layer *layer) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < layer->icon_count && status == CAMBER_OK; i++)
+        status = add_item(m, layer->layer, m->labels->items + layer->first_icon + i);
+    for (size_t i = 0; i < layer->glyph_count && status == CAMBER_OK; i++)
+        status = add_item(m, layer->layer, m->labels->items + layer->first_glyph + i);
     return status;
 }
 
@@ -230,12 +232,10 @@ static camber_status make_layers(shape_maker *m) {
     return status;
 }
 
-camber_status camber_label_shapes_make(const camber_labels *labels, const camber_view *view, camber_fonts *fonts,
-                                       camber_label_shapes *shapes) {
+camber_status camber_label_shapes_make(const camber_labels *labels, camber_fonts *fonts, camber_label_shapes *shapes) {
     shape_maker m = {.labels = labels,
                      .fonts = fonts,
                      .shapes = shapes,
-                     .lens = camber_view_lens_of(view),
                      .texts = {.context = labels->context},
                      .icons = {.context = labels->context}};
     *shapes = (camber_label_shapes){0};
@@ -305,12 +305,14 @@ size_t camber_label_shapes_passes(const camber_label_shapes *s, const camber_lab
         passes[count++] = (camber_pass){.first_polyline = range->first_icon,
                                         .polyline_count = range->icon_count,
                                         .paints = s->paints + s->look_count,
-                                        .paint_count = s->icon_count};
+                                        .paint_count = s->icon_count,
+                                        .upright = range->upright};
     }
     const camber_pass text = {.first_polyline = range->first_ring,
                               .polyline_count = range->ring_count,
                               .paints = s->halos,
-                              .paint_count = s->look_count};
+                              .paint_count = s->look_count,
+                              .upright = range->upright};
     if (range->ring_count && range->has_halo) {
         meshes[count] = CAMBER_MESH_TEXTS;
         passes[count++] = text;

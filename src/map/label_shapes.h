@@ -4,12 +4,13 @@
 
 #include "map/label_icons.h"
 
-/* The labels of a layer of the style: ranges of polylines. */
+/* The labels of a layer of the style, or those of them that are flat or upright: ranges of polylines. */
 typedef struct camber_label_range {
     size_t layer; /* of the style */
     size_t first_icon, icon_count;
     size_t first_ring, ring_count; /* of its texts, and of icons that are distances */
     bool has_halo;
+    bool upright; /* they are in the picture as it is seen, and not in the plane of the map */
 } camber_label_range;
 
 typedef struct camber_label_shapes {
@@ -24,10 +25,9 @@ typedef struct camber_label_shapes {
     size_t range_count;
 } camber_label_shapes;
 
-/* Makes the shapes of labels in the picture. Call camber_label_shapes_free even after a failure.
+/* Makes the shapes of labels. Call camber_label_shapes_free even after a failure.
  * Returns CAMBER_ERROR_LIMIT, CAMBER_ERROR_MEMORY. */
-camber_status camber_label_shapes_make(const camber_labels *labels, const camber_view *view, camber_fonts *fonts,
-                                       camber_label_shapes *shapes);
+camber_status camber_label_shapes_make(const camber_labels *labels, camber_fonts *fonts, camber_label_shapes *shapes);
 void camber_label_shapes_free(camber_label_shapes *shapes);
 
 /* Tessellates the shapes into the mesh's companion, and icons into the companion's companion. Without labels both

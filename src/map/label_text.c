@@ -5,12 +5,15 @@
 #include "map/label_layout.h"
 #include "style/unicode.h"
 
+#include <stdlib.h>
+
 /* A text, and the key of what it was made from. */
 typedef struct word {
     uint64_t hash;
     char *key; /* bytes */
     size_t key_size;
     camber_text *text;
+    char *said; /* the characters of its runs, each with a 0 at its end */
 } word;
 
 struct camber_label_words {
@@ -25,16 +28,20 @@ struct camber_label_words {
     size_t run_capacity;
 };
 
-enum { DESC_NUMBERS = 6, RUN_NUMBERS = 6 }; /* of a key */
 /* The most memory for keys. */
 #define KEY_LIMIT ((size_t)256 << 20)
+
+static void free_word(camber_context *context, word *w) {
+    camber_text_destroy(w->text);
+    camber_free(context, w->said);
+}
 
 void camber_label_words_free(camber_label_layout *layout) {
     struct camber_label_words *words = layout->words;
     if (!words)
         return;
     for (size_t i = 0; i < words->count; i++)
-        camber_text_destroy(words->items[i].text);
+        free_word(layout->context, words->items + i);
     camber_arena_free(&words->arena);
     camber_free(layout->context, words->items);
     camber_free(layout->context, words->slots);
@@ -42,6 +49,43 @@ void camber_label_words_free(camber_label_layout *layout) {
     camber_free(layout->context, words->runs);
     camber_free(layout->context, words);
     layout->words = NULL;
+}
+
+static int compare_texts(const void *left, const void *right) {
+    const camber_text *a, *b;
+    memcpy(&a, left, sizeof a);
+    memcpy(&b, right, sizeof b);
+    return a < b ? -1 : a > b;
+}
+
+camber_status camber_label_words_keep(camber_label_layout *layout) {
+    struct camber_label_words *words = layout->words;
+    size_t used = 0, kept = 0;
+    if (!words)
+        return CAMBER_OK;
+    const camber_text **texts = camber_alloc(layout->context, 2 * layout->form_count, sizeof *texts);
+    if (!texts)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < layout->form_count; i++) {
+        texts[used++] = layout->forms[i].text;
+        texts[used++] = layout->forms[i].vertical;
+    }
+    if (used)
+        qsort(texts, used, sizeof *texts, compare_texts);
+    for (size_t i = 0; i < words->count; i++) {
+        camber_text *text = words->items[i].text;
+        if (used && bsearch(&text, texts, used, sizeof *texts, compare_texts))
+            words->items[kept++] = words->items[i];
+        else
+            free_word(layout->context, words->items + i);
+    }
+    words->count = kept;
+    camber_free(layout->context, texts);
+    camber_arena_free(&words->arena);
+    camber_free(layout->context, words->slots);
+    words->slots = NULL;
+    words->slot_count = 0;
+    return CAMBER_OK;
 }
 
 static struct camber_label_words *words_of(camber_label_layout *layout) {
@@ -67,19 +111,18 @@ static bool put_text(camber_context *context, struct camber_label_words *words, 
 
 /* Writes a text's key: everything that the text depends on. */
 static bool write_key(camber_context *context, struct camber_label_words *words, const camber_text_desc *desc) {
-    const double lengths[DESC_NUMBERS] = {(double)desc->max_width_em,
-                                          (double)desc->line_height_em,
-                                          (double)desc->letter_spacing_em,
-                                          desc->anchor,
-                                          desc->justify,
-                                          desc->vertical};
+    const double lengths[] = {(double)desc->max_width_em,
+                              (double)desc->line_height_em,
+                              (double)desc->letter_spacing_em,
+                              desc->anchor,
+                              desc->justify,
+                              desc->vertical};
     words->key_size = 0;
     bool written = put(context, words, lengths, sizeof lengths);
     for (size_t i = 0; i < desc->run_count && written; i++) {
         const camber_text_run *run = desc->runs + i;
-        const double numbers[RUN_NUMBERS] = {(double)run->scale,           (double)run->image_width_em,
-                                             (double)run->image_height_em, run->align,
-                                             run->text ? 1.0 : 0.0,        (double)run->font_count};
+        const double numbers[] = {(double)run->scale, (double)run->image_width_em, (double)run->image_height_em,
+                                  run->align,         run->text ? 1.0 : 0.0,       (double)run->font_count};
         written = put(context, words, numbers, sizeof numbers) && put_text(context, words, run->text);
         for (size_t f = 0; f < run->font_count && written; f++)
             written = put_text(context, words, run->fonts[f]);
@@ -116,22 +159,25 @@ static bool widen(camber_context *context, struct camber_label_words *words) {
     return true;
 }
 
-/* Reads what write_key has written. */
-const char *camber_label_run_words(const char **at, bool is_first) {
-    double numbers[RUN_NUMBERS];
-    const char *run = *at + (is_first ? DESC_NUMBERS * sizeof(double) : 0);
-    memcpy(numbers, run, sizeof numbers);
-    const char *said = run + sizeof numbers, *next = said + strlen(said) + 1;
-    for (size_t i = 0; i < (size_t)numbers[RUN_NUMBERS - 1]; i++)
-        next += strlen(next) + 1;
-    *at = next;
+/* Copies the characters of the runs; an image has none. */
+static char *copy_said(camber_context *context, const camber_text_desc *desc) {
+    size_t size = 1;
+    for (size_t i = 0; i < desc->run_count; i++)
+        size += desc->runs[i].size_bytes + 1;
+    char *said = camber_alloc_zero(context, size, 1), *to = said;
+    for (size_t i = 0; i < desc->run_count && said; i++) {
+        if (desc->runs[i].size_bytes)
+            memcpy(to, desc->runs[i].text, desc->runs[i].size_bytes);
+        to += desc->runs[i].size_bytes + 1;
+    }
     return said;
 }
 
-/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. *made_from is what it was
- * made from. */
+/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. *said receives its
+ * characters.
+ */
 static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text,
-                           const char **made_from) {
+                           const char **said) {
     camber_context *context = layout->context;
     struct camber_label_words *words = layout->words;
     if (!write_key(context, words, desc) || !widen(context, words))
@@ -146,11 +192,16 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
         const camber_status status = camber_text_shape(layout->fonts, desc, &made);
         if (status != CAMBER_OK)
             return status;
-        words->items[words->count++] = (word){hash, key, words->key_size, made};
+        char *copy = copy_said(context, desc);
+        if (!copy) {
+            camber_text_destroy(made);
+            return CAMBER_ERROR_MEMORY;
+        }
+        words->items[words->count++] = (word){hash, key, words->key_size, made, copy};
         *slot = (uint32_t)words->count;
     }
     *text = words->items[*slot - 1].text;
-    *made_from = words->items[*slot - 1].key;
+    *said = words->items[*slot - 1].said;
     if ((*text)->glyph_count == 0)
         *text = NULL;
     return CAMBER_OK;

@@ -68,4 +68,16 @@ camber_status camber_labels_place(const camber_features *features, const camber_
                                   camber_sprites *sprites, camber_labels *labels);
 void camber_labels_free(camber_labels *labels);
 
+/* What the labels of a set of features have in common in all views: what can be labelled, and, as long as only the
+ * place of the view changes, texts and icons. */
+typedef struct camber_label_book camber_label_book;
+
+/* Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_label_book_create(const camber_features *features, camber_label_book **book);
+void camber_label_book_destroy(camber_label_book *book);
+/* Places the labels of a view with the features' own fonts and sprites, as camber_labels_place does, which gives the
+ * same labels. If the features have changed, or the view has another zoom, ratio, bearing or pitch, the book begins
+ * again. */
+camber_status camber_label_book_place(camber_label_book *book, const camber_view *view, camber_labels *labels);
+
 #endif

@@ -1,8 +1,12 @@
 /* Decides which labels are shown.
  *
  * Input: candidates by layer. Output: what each shows. Main idea (MapLibre's): later layers come first, and in a layer
- * the order is by sort key, by rank, then by a hash of place and words, so that the order of the input does not matter.
- * Each label in turn takes up its shapes in the picture, unless earlier labels are in the way. */
+ * the order is by sort key, by rank, by turn on a line, then by a hash of place and words, so that the order of the
+ * input does not matter. Each label in turn takes up its shapes in the picture, unless earlier labels are in the way.
+ *
+ * In a domain, labels outside it are not known, and may be in the way of those near its edges. So a label is unsettled
+ * if a label outside might meet it, or if it meets what an earlier unsettled label may show. All others are settled: a
+ * larger domain would give the same result. */
 #include "map/collision.h"
 #include "map/label_layout.h"
 
@@ -21,16 +25,25 @@ typedef struct said {
     uint32_t next; /* number + 1; 0: none */
 } said;
 
+typedef struct said_list {
+    said *items;
+    size_t count, capacity;
+    uint32_t *slots; /* slot_count, a power of two */
+    size_t slot_count;
+} said_list;
+
 typedef struct placer {
     camber_label_layout *layout;
+    const camber_label_domain *domain; /* NULL: a view */
     camber_collision grid;
     camber_label_track track;
     camber_obstacle *shapes; /* of the current text, then of its icon */
     size_t shape_count, shape_capacity;
-    said *said;
-    size_t said_count, said_capacity;
-    uint32_t *said_slots; /* said_slot_count, a power of two */
-    size_t said_slot_count;
+    said_list said;
+    /* In a domain: what unsettled labels may take up and say, and whether the current label is doubtful. */
+    camber_collision doubts;
+    said_list doubtful;
+    bool in_doubt;
 } placer;
 
 /* A part of a label, as it would be placed. */
@@ -45,6 +58,7 @@ typedef struct tried {
 typedef struct ordered {
     const camber_label_candidate *candidate;
     double keys[3]; /* the sort key, the order in the layer, the weight */
+    uint64_t rule;  /* a hash of the rule decides between labels of the same words at the same place */
 } ordered;
 
 static int compare(const void *a, const void *b) {
@@ -59,6 +73,8 @@ static int compare(const void *a, const void *b) {
         return c->x < d->x ? -1 : 1;
     if (c->y < d->y || c->y > d->y)
         return c->y < d->y ? -1 : 1;
+    if (p->rule != q->rule)
+        return p->rule < q->rule ? -1 : 1;
     return c < d ? -1 : c > d;
 }
 
@@ -80,7 +96,8 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
             order = c->feature;
         const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;
         const camber_label_form *form = layout->forms + c->form;
-        list[i] = (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}};
+        list[i] =
+            (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}, camber_label_rule_of(layout, c)->hash};
     }
     if (list)
         qsort(list, layer->candidate_count, sizeof *list, compare);
@@ -94,39 +111,76 @@ static uint64_t said_key(uint64_t words, double x, double y, double distance) {
     return camber_mix(camber_mix(camber_mix(0, words), (uint64_t)cell[0]), (uint64_t)cell[1]);
 }
 
-static bool is_said_near(const placer *p, uint64_t words, const camber_label_candidate *c, double distance) {
-    for (int i = 0; i < 9 && p->said_slot_count; i++) {
-        const uint64_t key = said_key(words, c->x + (i % 3 - 1) * distance, c->y + (i / 3 - 1) * distance, distance);
-        for (uint32_t s = p->said_slots[key & (p->said_slot_count - 1)]; s; s = p->said[s - 1].next) {
-            const said *other = p->said + s - 1;
-            if (other->key == key && hypot(other->x - c->x, other->y - c->y) < distance)
+static bool is_said_near(const said_list *list, uint64_t words, double x, double y, double distance) {
+    for (int i = 0; i < 9 && list->slot_count; i++) {
+        const uint64_t key = said_key(words, x + (i % 3 - 1) * distance, y + (i / 3 - 1) * distance, distance);
+        for (uint32_t s = list->slots[key & (list->slot_count - 1)]; s; s = list->items[s - 1].next) {
+            const said *other = list->items + s - 1;
+            if (other->key == key && hypot(other->x - x, other->y - y) < distance)
                 return true;
         }
     }
     return false;
 }
 
-static camber_status say(placer *p, uint64_t words, const camber_label_candidate *c, double distance) {
-    camber_context *context = p->layout->context;
-    if (!camber_grow(context, &p->said, &p->said_capacity, p->said_count + 1, sizeof *p->said))
+static camber_status add_said(camber_context *context, said_list *list, said made) {
+    if (!camber_grow(context, &list->items, &list->capacity, list->count + 1, sizeof *list->items))
         return CAMBER_ERROR_MEMORY;
-    p->said[p->said_count++] = (said){said_key(words, c->x, c->y, distance), c->x, c->y, 0};
-    const bool wider = p->said_count > p->said_slot_count;
+    list->items[list->count++] = made;
+    const bool wider = list->count > list->slot_count;
     if (wider) {
-        uint32_t *slots = camber_alloc_zero(context, 2 * p->said_count, 2 * sizeof *slots);
+        uint32_t *slots = camber_alloc_zero(context, 2 * list->count, 2 * sizeof *slots);
         if (!slots)
             return CAMBER_ERROR_MEMORY;
-        camber_free(context, p->said_slots);
-        p->said_slots = slots;
-        for (p->said_slot_count = 1; p->said_slot_count < 2 * p->said_count;)
-            p->said_slot_count *= 2;
+        camber_free(context, list->slots);
+        list->slots = slots;
+        for (list->slot_count = 1; list->slot_count < 2 * list->count;)
+            list->slot_count *= 2;
     }
-    for (size_t i = wider ? 0 : p->said_count - 1; i < p->said_count; i++) {
-        uint32_t *slot = p->said_slots + (p->said[i].key & (p->said_slot_count - 1));
-        p->said[i].next = *slot;
+    for (size_t i = wider ? 0 : list->count - 1; i < list->count; i++) {
+        uint32_t *slot = list->slots + (list->items[i].key & (list->slot_count - 1));
+        list->items[i].next = *slot;
         *slot = (uint32_t)i + 1;
     }
     return CAMBER_OK;
+}
+
+/* Returns how far the words of a candidate are from the next copy of the world in which they may matter, if the domain
+ * is the whole world: 0 for the candidate itself, then the world's width to either side. */
+static int count_copies(const placer *p) {
+    return p->domain && p->domain->whole ? 3 : 1;
+}
+
+static double copy_shift(const placer *p, int copy) {
+    return copy == 0 ? 0.0 : copy == 1 ? p->domain->world_px : -p->domain->world_px;
+}
+
+static camber_status say(placer *p, said_list *list, uint64_t words, const camber_label_candidate *c, double distance) {
+    camber_status status = CAMBER_OK;
+    for (int i = 0; i < count_copies(p) && status == CAMBER_OK; i++) {
+        const double x = c->x + copy_shift(p, i);
+        if (i == 0 || (x > -distance && x < p->domain->world_px + distance))
+            status = add_said(p->layout->context, list, (said){said_key(words, x, c->y, distance), x, c->y, 0});
+    }
+    return status;
+}
+
+/* Whether labels outside the domain may be within a distance of a box. */
+static bool is_exposed(const placer *p, double x0, double y0, double x1, double y1, double distance) {
+    const camber_label_domain *domain = p->domain;
+    return domain && !domain->whole &&
+           (x0 - distance <= domain->known.x0 || y0 - distance <= domain->known.y0 ||
+            x1 + distance >= domain->known.x1 || y1 + distance >= domain->known.y1);
+}
+
+/* Whether the words of a candidate are shown so near that they must not be repeated. */
+static bool is_repeated(placer *p, const camber_label_candidate *c, double distance) {
+    const uint64_t words = p->layout->forms[c->form].hash;
+    if (is_said_near(&p->said, words, c->x, c->y, distance))
+        return true;
+    p->in_doubt |=
+        is_exposed(p, c->x, c->y, c->x, c->y, distance) || is_said_near(&p->doubtful, words, c->x, c->y, distance);
+    return false;
 }
 
 /* ---- Shapes ---- */
@@ -139,25 +193,56 @@ static camber_status add_shape(placer *p, camber_obstacle shape) {
 }
 
 /* Labels that avoid edges do not cross the edges of the picture. */
-static bool crosses_edge(const camber_view *view, const camber_obstacle *shape) {
-    return shape->x0 < 0.0f || shape->y0 < 0.0f || shape->x1 > (float)view->width || shape->y1 > (float)view->height;
+static bool crosses_edge(const placer *p, const camber_obstacle *shape) {
+    const camber_view *view = p->layout->view;
+    return !p->domain &&
+           (shape->x0 < 0.0 || shape->y0 < 0.0 || shape->x1 > (double)view->width || shape->y1 > (double)view->height);
+}
+
+/* Whether a shape that is relative to its label's anchor reaches too far from it, or around the world. */
+static bool reaches_too_far(const placer *p, const camber_obstacle *shape) {
+    const double reach = fmin(CAMBER_LABEL_REACH_PX, 0.5 * p->domain->world_px);
+    return !(shape->x0 > -reach && shape->y0 > -reach && shape->x1 < reach && shape->y1 < reach);
 }
 
 /* Whether the shapes from first on are free, and one of them is in the grid. */
-static bool is_free(const placer *p, size_t first, camber_symbol_overlap overlap, bool avoid_edges) {
-    bool held = false;
+static bool is_free(placer *p, size_t first, camber_symbol_overlap overlap, bool avoid_edges) {
+    bool held = false, doubtful = false;
     for (size_t i = first; i < p->shape_count; i++) {
-        if (avoid_edges && crosses_edge(p->layout->view, p->shapes + i))
+        const camber_obstacle *shape = p->shapes + i;
+        if (avoid_edges && crosses_edge(p, shape))
             return false;
-        held |= camber_collision_holds(&p->grid, p->shapes + i);
-        if (camber_collision_hits(&p->grid, p->shapes + i, overlap))
+        held |= camber_collision_holds(&p->grid, shape);
+        if (camber_collision_hits(&p->grid, shape, overlap))
             return false;
+        if (p->domain && overlap != CAMBER_OVERLAP_ALWAYS)
+            doubtful |= is_exposed(p, shape->x0, shape->y0, shape->x1, shape->y1, CAMBER_LABEL_REACH_PX) ||
+                        camber_collision_hits(&p->doubts, shape, overlap);
     }
+    p->in_doubt |= doubtful;
     return held;
 }
 
-static camber_status add_box(placer *p, const camber_label_frame *frame, camber_box box, const double padding[4],
-                             bool *added) {
+/* Adds a shape of a candidate's label. In a domain it is relative to the anchor. *added is false if it is not allowed.
+ */
+static camber_status put_shape(placer *p, const camber_label_candidate *c, camber_obstacle shape, bool *added) {
+    if (p->domain) {
+        shape = (camber_obstacle){camber_label_snap(shape.x0), camber_label_snap(shape.y0), camber_label_snap(shape.x1),
+                                  camber_label_snap(shape.y1), camber_label_snap(shape.radius)};
+        *added = !reaches_too_far(p, &shape);
+        if (!*added)
+            return CAMBER_OK;
+        shape.x0 += c->x;
+        shape.y0 += c->y;
+        shape.x1 += c->x;
+        shape.y1 += c->y;
+    }
+    *added = true;
+    return add_shape(p, shape);
+}
+
+static camber_status add_box(placer *p, const camber_label_candidate *c, const camber_label_frame *frame,
+                             camber_box box, const double padding[4], bool *added) {
     const double ratio = p->layout->view->ratio;
     const camber_box padded = {box.x0 - padding[3] * ratio, box.y0 - padding[0] * ratio, box.x1 + padding[1] * ratio,
                                box.y1 + padding[2] * ratio};
@@ -165,13 +250,14 @@ static camber_status add_box(placer *p, const camber_label_frame *frame, camber_
     *added = camber_label_bounds(p->layout, frame, &padded, &b);
     if (!*added)
         return CAMBER_OK;
-    return add_shape(p, (camber_obstacle){(float)b.x0, (float)b.y0, (float)b.x1, (float)b.y1, 0.0f});
+    return put_shape(p, c, (camber_obstacle){b.x0, b.y0, b.x1, b.y1, 0.0}, added);
 }
 
 /* ---- Text ---- */
 
-/* Adds circles along the line, at such distances that collisions are found well. */
-static camber_status add_circles(placer *p, const camber_label_candidate *c, const camber_text *text) {
+/* Adds circles along the line, at such distances that collisions are found well. *fits is set to false if the text
+ * reaches too far. */
+static camber_status add_circles(placer *p, const camber_label_candidate *c, const camber_text *text, bool *fits) {
     const camber_label_rule *rule = camber_label_rule_of(p->layout, c);
     const camber_label_track *track = &p->track;
     const double nearness = camber_label_nearness(p->layout, c);
@@ -189,10 +275,11 @@ static camber_status add_circles(placer *p, const camber_label_candidate *c, con
         double at[2] = {point.x, point.y};
         if (track->flat && !(camber_lens_see(&p->layout->lens, at, at) > 0.0))
             continue;
-        const camber_obstacle circle = {(float)(at[0] - radius), (float)(at[1] - radius), (float)(at[0] + radius),
-                                        (float)(at[1] + radius), (float)radius};
-        if (add_shape(p, circle) != CAMBER_OK)
+        bool added;
+        if (put_shape(p, c, (camber_obstacle){at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius, radius},
+                      &added) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
+        *fits &= added;
     }
     return CAMBER_OK;
 }
@@ -205,8 +292,8 @@ static camber_status try_along(placer *p, const camber_label_candidate *c, tried
     if (status != CAMBER_OK || !fits)
         return status;
     text->vertical = p->track.vertical;
-    status = add_circles(p, c, text->vertical ? form->vertical : form->text);
-    text->placed = status == CAMBER_OK && is_free(p, text->first_shape, s->text.overlap, s->avoid_edges);
+    status = add_circles(p, c, text->vertical ? form->vertical : form->text, &fits);
+    text->placed = status == CAMBER_OK && fits && is_free(p, text->first_shape, s->text.overlap, s->avoid_edges);
     return status;
 }
 
@@ -219,7 +306,7 @@ static camber_status try_anchor(placer *p, const camber_label_candidate *c, camb
     const camber_label_frame frame = camber_label_text_frame(p->layout, c);
     const size_t first = p->shape_count = text->first_shape;
     bool added;
-    camber_status status = add_box(p, &frame, camber_label_text_box(p->layout, c, text->vertical, text->anchor),
+    camber_status status = add_box(p, c, &frame, camber_label_text_box(p->layout, c, text->vertical, text->anchor),
                                    s->text.padding_px, &added);
     if (status != CAMBER_OK || !added)
         return status;
@@ -229,7 +316,7 @@ static camber_status try_anchor(placer *p, const camber_label_candidate *c, camb
         return CAMBER_OK;
     const camber_label_frame about = camber_label_icon_frame(p->layout, c);
     const camber_box icon = camber_label_icon_box(p->layout, c, text->vertical, text->anchor);
-    status = add_box(p, &about, icon, s->icon.padding_px, &added);
+    status = add_box(p, c, &about, icon, s->icon.padding_px, &added);
     text->placed = status == CAMBER_OK && added && is_free(p, first + 1, overlap, s->avoid_edges);
     p->shape_count = first + 1;
     return status;
@@ -284,7 +371,7 @@ static camber_status try_icon(placer *p, const camber_label_candidate *c, const 
     const bool vertical = text->vertical && form->vertical;
     bool added;
     const camber_status status =
-        add_box(p, &frame, camber_label_icon_box(p->layout, c, vertical, text->anchor), s->icon.padding_px, &added);
+        add_box(p, c, &frame, camber_label_icon_box(p->layout, c, vertical, text->anchor), s->icon.padding_px, &added);
     icon->placed = status == CAMBER_OK && added && is_free(p, icon->first_shape, s->icon.overlap, s->avoid_edges);
     icon->shape_count = icon->placed ? 1 : 0;
     p->shape_count = icon->first_shape + icon->shape_count;
@@ -293,14 +380,27 @@ static camber_status try_icon(placer *p, const camber_label_candidate *c, const 
 
 /* ---- Labels ---- */
 
+/* Adds a shape to a grid. If the domain is the whole world, its copies beyond the edges of the world are added, too. */
+static camber_status add_to_grid(const placer *p, camber_collision *grid, const camber_obstacle *shape,
+                                 camber_symbol_overlap overlap) {
+    camber_status status = CAMBER_OK;
+    for (int i = 0; i < count_copies(p) && status == CAMBER_OK; i++) {
+        camber_obstacle copy = *shape;
+        copy.x0 += copy_shift(p, i);
+        copy.x1 += copy_shift(p, i);
+        status = camber_collision_add(grid, &copy, overlap);
+    }
+    return status;
+}
+
 static camber_status take(placer *p, const tried *part, const camber_symbol_part *as, camber_label_candidate *c) {
     camber_status status = CAMBER_OK;
     for (size_t i = part->first_shape; i < part->first_shape + part->shape_count && status == CAMBER_OK; i++) {
         const camber_obstacle *shape = p->shapes + i;
-        camber_box_add(&c->box, (double)shape->x0, (double)shape->y0);
-        camber_box_add(&c->box, (double)shape->x1, (double)shape->y1);
+        camber_box_add(&c->box, shape->x0, shape->y0);
+        camber_box_add(&c->box, shape->x1, shape->y1);
         if (!as->ignore_placement)
-            status = camber_collision_add(&p->grid, shape, as->overlap);
+            status = add_to_grid(p, c->unsettled ? &p->doubts : &p->grid, shape, as->overlap);
     }
     return status;
 }
@@ -316,19 +416,73 @@ static void agree(const camber_label_form *form, const camber_symbol *s, tried *
         icon->placed = icon->placed && text->placed;
 }
 
-static bool is_seen(const camber_view *view, const camber_box *box) {
-    return box->x0 <= box->x1 && box->x1 > 0.0 && box->y1 > 0.0 && box->x0 < view->width && box->y0 < view->height;
+static bool is_seen(const placer *p, const camber_box *box) {
+    const camber_view *view = p->layout->view;
+    return box->x0 <= box->x1 &&
+           (p->domain || (box->x1 > 0.0 && box->y1 > 0.0 && box->x0 < view->width && box->y0 < view->height));
+}
+
+/* Adds all shapes that a text or an icon about a point may take: at each anchor, in each direction of writing. */
+static camber_status take_all_boxes(placer *p, camber_label_candidate *c, bool of_text) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_label_rule *rule = p->layout->rules + form->rule;
+    const camber_symbol_part *part = of_text ? &rule->symbol.text : &rule->symbol.icon;
+    const camber_label_frame frame =
+        of_text ? camber_label_text_frame(p->layout, c) : camber_label_icon_frame(p->layout, c);
+    camber_status status = CAMBER_OK;
+    for (int down = 0; down < (form->vertical ? 2 : 1); down++)
+        for (size_t i = 0; i < rule->anchor_count && status == CAMBER_OK; i++) {
+            bool added;
+            p->shape_count = 0;
+            const camber_box box = of_text ? camber_label_text_box(p->layout, c, down == 1, i)
+                                           : camber_label_icon_box(p->layout, c, down == 1, i);
+            status = add_box(p, c, &frame, box, part->padding_px, &added);
+            if (status == CAMBER_OK && added)
+                status = take(p, &(tried){.shape_count = p->shape_count}, part, c);
+        }
+    return status;
+}
+
+/* Records what an unsettled label may take up and say. */
+static camber_status take_doubtful(placer *p, camber_label_candidate *c, double near) {
+    const camber_label_form *form = p->layout->forms + c->form;
+    const camber_label_rule *rule = p->layout->rules + form->rule;
+    camber_status status = CAMBER_OK;
+    c->unsettled = true;
+    if (form->text && rule->text_along && c->line != CAMBER_NO_PATH) {
+        bool fits;
+        p->shape_count = 0;
+        status = camber_label_track_find(p->layout, c, &p->track, &fits);
+        if (status == CAMBER_OK && fits)
+            status = add_circles(p, c, p->track.vertical ? form->vertical : form->text, &fits);
+        if (status == CAMBER_OK && fits)
+            status = take(p, &(tried){.shape_count = p->shape_count}, &rule->symbol.text, c);
+    } else if (form->text) {
+        status = take_all_boxes(p, c, true);
+    }
+    if (status == CAMBER_OK && form->icon)
+        status = take_all_boxes(p, c, false);
+    return status == CAMBER_OK && near > 0.0 ? say(p, &p->doubtful, form->hash, c, near) : status;
+}
+
+/* Whether the label shows nothing, whatever the labels are that are not settled: more of them leave less room. An icon
+ * may depend on where its text is. */
+static bool is_hidden(const camber_label_rule *rule, const tried *text, const tried *icon) {
+    return !text->placed && !icon->placed && !(rule->variable && rule->symbol.text_fit != CAMBER_FIT_NONE);
 }
 
 static camber_status place_one(placer *p, camber_label_candidate *c) {
     const camber_label_form *form = p->layout->forms + c->form;
-    const camber_symbol *s = &p->layout->rules[form->rule].symbol;
-    const double near = 0.5 * s->spacing_px * p->layout->view->ratio;
-    const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text && near > 0.0;
+    const camber_label_rule *rule = p->layout->rules + form->rule;
+    const camber_symbol *s = &rule->symbol;
+    const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text;
+    const double spacing = s->spacing_px * camber_label_whole_zoom_px(p->layout->view);
+    const double near = repeats ? fmax(0.5 * spacing, 0.0) : 0.0;
     tried text, icon;
     c->box = CAMBER_BOX_EMPTY;
     p->shape_count = 0;
-    if (!(camber_label_nearness(p->layout, c) > 0.0) || (repeats && is_said_near(p, form->hash, c, near)))
+    p->in_doubt = false;
+    if (!(camber_label_nearness(p->layout, c) > 0.0) || (near > 0.0 && is_repeated(p, c, near)))
         return CAMBER_OK;
     camber_status status = try_text(p, c, &text);
     if (status == CAMBER_OK)
@@ -336,13 +490,15 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     if (status != CAMBER_OK)
         return status;
     agree(form, s, &text, &icon);
+    if (p->in_doubt && !is_hidden(rule, &text, &icon))
+        return take_doubtful(p, c, near);
     if (text.placed)
         status = take(p, &text, &s->text, c);
     if (icon.placed && status == CAMBER_OK)
         status = take(p, &icon, &s->icon, c);
-    if (status == CAMBER_OK && repeats && text.placed)
-        status = say(p, form->hash, c, near);
-    const bool seen = is_seen(p->layout->view, &c->box);
+    if (status == CAMBER_OK && near > 0.0 && text.placed)
+        status = say(p, &p->said, form->hash, c, near);
+    const bool seen = is_seen(p, &c->box);
     c->shows_text = text.placed && seen;
     c->shows_icon = icon.placed && seen;
     c->vertical = text.vertical && form->vertical;
@@ -350,31 +506,54 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     return status;
 }
 
+static void forget_words(said_list *list) {
+    list->count = 0;
+    for (size_t i = 0; i < list->slot_count; i++)
+        list->slots[i] = 0;
+}
+
 static camber_status place_layer(placer *p, const camber_layout_layer *layer) {
     ordered *list = sort_layer(p->layout, layer);
     camber_status status = list ? CAMBER_OK : CAMBER_ERROR_MEMORY;
-    p->said_count = 0;
-    for (size_t i = 0; i < p->said_slot_count; i++)
-        p->said_slots[i] = 0;
+    forget_words(&p->said);
+    forget_words(&p->doubtful);
     for (size_t i = 0; i < layer->candidate_count && status == CAMBER_OK; i++)
         status = place_one(p, p->layout->candidates + (list[i].candidate - p->layout->candidates));
     camber_free(p->layout->context, list);
     return status;
 }
 
-camber_status camber_label_place_all(camber_label_layout *layout) {
+/* Returns the part of the plane in which labels collide. */
+static camber_box find_bounds(const camber_label_layout *layout) {
     const camber_view *view = layout->view;
-    const double margin = CAMBER_LABEL_MARGIN_PX * view->ratio;
-    placer p = {.layout = layout, .track.context = layout->context};
-    camber_status status = camber_collision_make(
-        layout->context, (camber_box){-margin, -margin, view->width + margin, view->height + margin},
-        CELL_PX * view->ratio, &p.grid);
+    const double margin = CAMBER_LABEL_MARGIN_PX * view->ratio, reach = CAMBER_LABEL_REACH_PX;
+    if (!layout->domain)
+        return (camber_box){-margin, -margin, view->width + margin, view->height + margin};
+    camber_box box = CAMBER_BOX_EMPTY;
+    for (size_t i = 0; i < layout->candidate_count; i++)
+        camber_box_add(&box, layout->candidates[i].x, layout->candidates[i].y);
+    return (camber_box){box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach};
+}
+
+camber_status camber_label_place_all(camber_label_layout *layout) {
+    camber_context *context = layout->context;
+    placer p = {.layout = layout, .domain = layout->domain, .track.context = context};
+    if (layout->candidate_count == 0)
+        return CAMBER_OK;
+    const camber_box bounds = find_bounds(layout);
+    camber_status status = camber_collision_make(context, bounds, CELL_PX * layout->view->ratio, &p.grid);
+    if (status == CAMBER_OK && p.domain)
+        status = camber_collision_make(context, bounds, CELL_PX * layout->view->ratio, &p.doubts);
     for (size_t i = layout->layer_count; i-- > 0 && status == CAMBER_OK;)
         status = place_layer(&p, layout->layers + i);
     camber_collision_free(&p.grid);
-    camber_free(layout->context, p.track.points);
-    camber_free(layout->context, p.shapes);
-    camber_free(layout->context, p.said);
-    camber_free(layout->context, p.said_slots);
+    if (p.domain)
+        camber_collision_free(&p.doubts);
+    camber_free(context, p.track.points);
+    camber_free(context, p.shapes);
+    camber_free(context, p.said.items);
+    camber_free(context, p.said.slots);
+    camber_free(context, p.doubtful.items);
+    camber_free(context, p.doubtful.slots);
     return status;
 }

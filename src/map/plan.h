@@ -129,7 +129,8 @@ bool camber_plan_labels(const camber_features *features, const camber_style_laye
 /* Whether features of the class are drawn at any of the zooms (drawn.c). Labels do not count. */
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom);
-/* Finds the box of everything that is drawn at any of the zooms, in world coordinates. It extends past x = 1 if the box
+/* Finds the box of everything that is drawn at any of the zooms, and, if fonts were read, of everything that may have a
+ * label, in world coordinates. It extends past x = 1 if the box
  * across the antimeridian is smaller. CAMBER_BOX_EMPTY: nothing is drawn. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom, camber_box *box);
 /* Converts such a box to degrees: west, south, east, north. false: it is empty. */

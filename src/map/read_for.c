@@ -7,6 +7,7 @@
 
 #include "base/perspective.h"
 #include "features/features.h"
+#include "map/zoom_labels.h"
 #include "style/bounds.h"
 
 #include <math.h>
@@ -15,8 +16,9 @@
 static const double WIDEST_PX = 16384.0, LARGEST_REACH_PX = 65536.0;
 /* A margin for effects of the camera near a picture's edges, px. */
 static const double SLACK_PX = 64.0;
-/* How far outside a picture the middle of a label may be if the label reaches into the picture, CSS px. */
-static const double LABEL_PX = 256.0;
+/* How far outside a picture the anchor of a label may be if the label reaches into the picture, CSS px; and how far what
+ * is there may matter to the labels of a zoom that are in the picture (zoom_labels.c). */
+static const double LABEL_PX = 256.0, ZOOM_LABEL_PX = 1024.0;
 
 static double bound(const camber_style_layer *layer, camber_property_id property, double zoom) {
     return camber_style_layer_bound(layer, property, zoom);
@@ -75,6 +77,10 @@ double camber_view_circle_reach(const camber_style *style, const camber_view *vi
     return reach_of_style(style, view, true);
 }
 
+double camber_view_label_reach(const camber_features *features, const camber_view *view) {
+    return camber_features_label_kinds(features) ? LABEL_PX * view->ratio : 0.0;
+}
+
 camber_status camber_features_read_for(camber_features *features, const camber_scene_desc *scene) {
     camber_view view;
     double corners[8];
@@ -92,9 +98,10 @@ camber_status camber_features_read_for(camber_features *features, const camber_s
         region.y0 = fmin(region.y0, corners[2 * i + 1]);
         region.y1 = fmax(region.y1, corners[2 * i + 1]);
     }
-    double margin = camber_view_margin(features->style, &view, scene->simplify_px);
-    if (camber_features_label_kinds(features))
-        margin = fmax(margin, LABEL_PX * view.ratio / view.scale_px);
+    double reach = camber_view_label_reach(features, &view);
+    if (reach > 0.0 && camber_view_has_zoom_labels(features->style, &view))
+        reach = ZOOM_LABEL_PX * view.ratio;
+    const double margin = fmax(camber_view_margin(features->style, &view, scene->simplify_px), reach / view.scale_px);
     region = (camber_region){region.x0 - margin, region.y0 - margin, region.x1 + margin, region.y1 + margin};
     /* A picture about as wide as the world needs everything. */
     features->region = region;

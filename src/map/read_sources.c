@@ -7,9 +7,9 @@
 
 /* The same values as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
-/* The largest circle radius, in CSS px, for which more tiles are read. It also applies to labels, and to circles whose
- * size depends on the features. */
-static const double MOST_REACH_PX = 256.0;
+/* The largest circle radius, in CSS px, for which more tiles are read. It also applies to circles whose size depends on
+ * the features. */
+static const double MOST_CIRCLE_PX = 256.0;
 
 /* Moves a view without a camera to show the bounds of all sources. */
 static void fit_bounds(const camber_sources *sources, camber_view *view) {
@@ -30,9 +30,8 @@ static camber_tile_cover cover_of(const camber_features *features, const camber_
     camber_tile_cover cover = {.zoom = view->zoom};
     double centre[2] = {0.0, 0.0};
     camber_view_corners(view, cover.corners);
-    double reach_px = fmin(camber_view_circle_reach(features->style, view), MOST_REACH_PX * view->ratio);
-    if (camber_features_label_kinds(features))
-        reach_px = MOST_REACH_PX * view->ratio;
+    const double circle_px = fmin(camber_view_circle_reach(features->style, view), MOST_CIRCLE_PX * view->ratio);
+    const double reach_px = fmax(circle_px, camber_view_label_reach(features, view));
     const double grown = 2.0 * reach_px / fmin((double)view->width, (double)view->height);
     for (int i = 0; i < 8; i++)
         centre[i & 1] += 0.25 * cover.corners[i];

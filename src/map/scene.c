@@ -2,10 +2,10 @@
  *
  * Input: features and a view, or a zoom's plan and a window of it. Output: a network of the lines that the style draws
  * there, the passes that draw a mesh of it, and the camera. Main idea: the plan says which style layers draw which
- * features. The network is made once per plan, and is kept while the view moves and the plan does not change. The
- * network of a window has only the lines that reach into it and the points that the zoom's simplification keeps, so the
- * memory for drawing does not grow with the data. camber_scene_project makes the same lines on the host, with the CPU
- * twin. */
+ * features. The network is made once per plan, and is kept while the view moves and the plan does not change. So are
+ * the plan and the texts of labels while only the place of the view changes. The network of a window has only the lines
+ * that reach into it and the points that the zoom's simplification keeps, so the memory for drawing does not grow with
+ * the data. camber_scene_project makes the same lines on the host, with the CPU twin. */
 #include "map/scene.h"
 #include "map/label_shapes.h"
 #include "map/passes.h"
@@ -26,8 +26,10 @@ struct camber_scene {
     camber_view view;
     camber_plan_network geometry;
     camber_pass_list pair_passes;
-    camber_labels placed;       /* in the picture */
-    camber_label_shapes labels; /* their shapes */
+    camber_label_book *book;    /* NULL: none yet, or the scene has only one view */
+    camber_label_shapes labels; /* of the picture */
+    camber_labels shown;        /* what they were made from */
+    size_t label_count;
 
     /* On the host: empty until camber_scene_project. */
     bool is_projected;
@@ -153,29 +155,53 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
     return status;
 }
 
-/* Places the labels of the view and makes their shapes, if fonts were read with the features. */
-static camber_status make_labels(camber_scene *scene) {
+/* Places the labels of the view, or takes those of the zoom, and makes their shapes, if fonts were read with the
+ * features. placed NULL: the labels are those of the view. */
+static camber_status make_labels(camber_scene *scene, const camber_window_labels *placed) {
     const camber_features *features = scene->zoom->features;
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
-    camber_status status =
-        camber_labels_place(features, &scene->view, features->fonts, features->sprites, &scene->placed);
+    camber_status status = CAMBER_OK;
+    if (placed)
+        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &scene->shown);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW && camber_view_has_zoom_labels(features->style, &scene->view))
+        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &scene->shown);
+    else if (scene->use == CAMBER_SCENE_ONE_VIEW)
+        status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &scene->shown);
+    else if (scene->book || (status = camber_label_book_create(features, &scene->book)) == CAMBER_OK)
+        status = camber_label_book_place(scene->book, &scene->view, &scene->shown);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&scene->placed, &scene->view, features->fonts, &scene->labels);
+        status = camber_label_shapes_make(&scene->shown, features->fonts, &scene->labels);
+    scene->label_count = scene->shown.label_count;
     return status;
 }
 
-/* Makes the scene of a whole view. former: a network that is taken over if it can be used for this view, too. */
+/* Makes the plan. former: a plan that is moved and taken over if the view differs only in its place. NULL: none. */
+static camber_status make_plan(camber_scene *scene, const camber_features *features, const camber_scene_desc *desc,
+                               camber_zoom_plan *former) {
+    camber_view view;
+    if (!former || desc->view.kind == CAMBER_VIEW_FIT)
+        return camber_zoom_plan_create_view(features, &desc->view, desc->simplify_px, &scene->own);
+    const camber_status status = camber_view_create(scene->context, &desc->view, &view);
+    if (status != CAMBER_OK)
+        return status;
+    if (!camber_zoom_plan_move(former, &view))
+        return camber_zoom_plan_create_view(features, &desc->view, desc->simplify_px, &scene->own);
+    scene->own = former;
+    return CAMBER_OK;
+}
+
+/* Makes the scene of a whole view. former_plan and former are taken over if they can be used for this view, too. */
 static camber_status make_view_scene(camber_scene *scene, const camber_features *features,
-                                     const camber_scene_desc *desc, camber_plan_network *former,
-                                     camber_features *consumed_features) {
-    camber_status status = camber_zoom_plan_create_view(features, &desc->view, desc->simplify_px, &scene->own);
+                                     const camber_scene_desc *desc, camber_zoom_plan *former_plan,
+                                     camber_plan_network *former, camber_features *consumed_features) {
+    camber_status status = make_plan(scene, features, desc, former_plan);
     if (status != CAMBER_OK)
         return status;
     scene->zoom = scene->own;
     scene->zoom->lines_only = scene->use == CAMBER_SCENE_LINES;
     scene->view = scene->zoom->view;
-    status = make_labels(scene); /* first, because making the network may free the features' points */
+    status = make_labels(scene, NULL); /* first, because making the network may free the features' points */
     if (status != CAMBER_OK)
         return status;
     if (scene->use != CAMBER_SCENE_ONE_VIEW && camber_plan_network_serves(former, &scene->view, &scene->zoom->plan)) {
@@ -191,8 +217,8 @@ static void release_contents(camber_scene *scene) {
     release_projection(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
     camber_label_shapes_free(&scene->labels);
-    if (scene->placed.context)
-        camber_labels_free(&scene->placed);
+    if (scene->shown.context)
+        camber_labels_free(&scene->shown);
     camber_plan_network_destroy(&scene->geometry);
     camber_zoom_plan_destroy(scene->own);
 }
@@ -217,7 +243,7 @@ static camber_status warn_if_nothing_is_drawn(const camber_scene *scene) {
         return CAMBER_OK;
     if (undrawn && undrawn < all)
         camber_log(scene->context, CAMBER_LOG_INFO, "style: no layer draws %zu of the %zu features", undrawn, all);
-    if (!undrawn || undrawn < all || scene->placed.label_count)
+    if (!undrawn || undrawn < all || scene->label_count)
         return CAMBER_OK;
     const camber_status status = camber_plan_explain_nothing(features, zoom, zoom, why, sizeof why, &draws);
     if (status == CAMBER_OK)
@@ -253,7 +279,7 @@ static camber_status create(const camber_features *features, const camber_scene_
     camber_plan_network none = {0};
     made->context = context;
     made->use = desc->use;
-    camber_status status = make_view_scene(made, features, desc, &none, consumed_features);
+    camber_status status = make_view_scene(made, features, desc, NULL, &none, consumed_features);
     if (status == CAMBER_OK)
         status = warn_if_nothing_is_drawn(made);
     if (status != CAMBER_OK) {
@@ -279,7 +305,8 @@ camber_status camber_scene_create_last(camber_features *features, const camber_s
     return create(features, &once, features, scene);
 }
 
-camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window, const uint32_t *polylines,
+camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window,
+                                         const camber_window_labels *labels, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene) {
     camber_plan_entries listed = {0};
     camber_scene *made = camber_alloc_zero(zoom->context, 1, sizeof *made);
@@ -290,6 +317,8 @@ camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_vi
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, window, CAMBER_NETWORK_WINDOW, &listed, &made->geometry);
     camber_plan_entries_free(&listed);
+    if (status == CAMBER_OK && labels && labels->labels)
+        status = make_labels(made, labels);
     if (status == CAMBER_OK)
         status = make_pair_passes(made);
     if (status == CAMBER_OK)
@@ -302,17 +331,25 @@ camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_vi
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
     assert(scene->own);
     const camber_scene_desc desc = {.view = *view, .simplify_px = scene->zoom->simplify_px};
-    camber_scene moved = {.context = scene->context, .use = scene->use};
+    camber_scene moved = {.context = scene->context, .use = scene->use, .book = scene->book};
     /* The network always belongs to only one of the two scenes. */
     camber_plan_network geometry = scene->geometry;
-    const camber_status status = make_view_scene(&moved, scene->zoom->features, &desc, &geometry, NULL);
+    const camber_status status = make_view_scene(&moved, scene->zoom->features, &desc, scene->own, &geometry, NULL);
+    const bool keeps_plan = moved.own == scene->own;
+    scene->book = moved.book;
     if (status != CAMBER_OK) {
         if (!geometry.context)
             moved.geometry = (camber_plan_network){0};
+        if (keeps_plan) {
+            moved.own = NULL;
+            (void)camber_zoom_plan_move(scene->own, &scene->view);
+        }
         release_contents(&moved);
         return status;
     }
     scene->geometry = geometry;
+    if (keeps_plan)
+        scene->own = NULL;
     release_contents(scene);
     *scene = moved;
     return CAMBER_OK;
@@ -342,6 +379,7 @@ void camber_scene_destroy(camber_scene *scene) {
         return;
     camber_context *context = scene->context;
     release_contents(scene);
+    camber_label_book_destroy(scene->book);
     camber_free(context, scene);
 }
 
@@ -352,7 +390,7 @@ camber_scene_parts camber_scene_get_parts(camber_scene *scene) {
                                 .view = &scene->view,
                                 .geometry = &scene->geometry,
                                 .passes = &scene->pair_passes,
-                                .labels = &scene->placed,
+                                .labels = &scene->shown,
                                 .shapes = &scene->labels};
 }
 
@@ -370,7 +408,7 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     info.polylines = scene->counts.polylines;
     info.points = scene->counts.points;
     info.points_in = scene->counts.points_in;
-    info.labels = scene->placed.label_count;
+    info.labels = scene->label_count;
     return info;
 }
 
@@ -409,8 +447,8 @@ static void move_fills(camber_scene *scene) {
 static void set_meshes(const camber_pass_list *list, camber_mesh *mesh) {
     camber_mesh *meshes[] = {mesh, NULL, NULL};
     for (size_t i = 0; i < list->count; i++) {
-        for (size_t k = 1; k <= list->meshes[i] && !meshes[k]; k++)
-            if (camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
+        for (size_t k = 1; k <= list->meshes[i] && meshes[k - 1]; k++)
+            if (!meshes[k] && camber_mesh_get_companion(meshes[k - 1], meshes + k) != CAMBER_OK)
                 meshes[k] = NULL;
         list->passes[i].mesh = meshes[list->meshes[i]];
         list->passes[i].kind = list->passes[i].mesh || !list->meshes[i] ? list->passes[i].kind : CAMBER_PASS_FILL;

@@ -189,6 +189,11 @@ camber_view_lens camber_view_lens_of(const camber_view *view) {
     return lens;
 }
 
+uint64_t camber_view_key(const camber_view *view) {
+    const double values[] = {view->zoom, view->scale_px, view->bearing_deg, view->pitch_deg, view->ratio};
+    return camber_hash(CAMBER_HASH_START, values, sizeof values);
+}
+
 double camber_view_style_zoom(const camber_view *view) {
     return view->zoom < 0.0 ? 0.0 : view->zoom;
 }

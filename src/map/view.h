@@ -44,6 +44,12 @@ double camber_view_margin(const camber_style *style, const camber_view *view, do
 /* Returns how far a circle of the style reaches from its point at most, in px (read_for.c). 0: the style draws none
  * here. */
 double camber_view_circle_reach(const camber_style *style, const camber_view *view);
+/* Returns how far labels are taken to reach from their anchors, in px (read_for.c). 0: no labels are read. */
+double camber_view_label_reach(const camber_features *features, const camber_view *view);
+
+/* Returns a hash of everything but the place and the size: views with equal keys show the same map by the same style.
+ */
+uint64_t camber_view_key(const camber_view *view);
 
 /* Returns the zoom for evaluating styles: 0 to 24. */
 double camber_view_style_zoom(const camber_view *view);

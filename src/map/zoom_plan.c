@@ -84,6 +84,7 @@ camber_status camber_zoom_plan_create_view(const camber_features *features, cons
     if (!made)
         return CAMBER_ERROR_MEMORY;
     camber_status status = camber_view_create(features->context, desc, &made->view);
+    made->features_key = camber_features_key(features);
     if (status == CAMBER_OK && features->polyline_count && !features->points)
         status = camber_fail(features->context, CAMBER_ERROR_ARGUMENT,
                              "scene: the points of its features have been released; read the features again");
@@ -100,6 +101,15 @@ camber_status camber_zoom_plan_create_view(const camber_features *features, cons
     else
         camber_zoom_plan_destroy(made);
     return status;
+}
+
+bool camber_zoom_plan_move(camber_zoom_plan *zoom, const camber_view *view) {
+    if (zoom->features_key != camber_features_key(zoom->features) ||
+        camber_view_key(view) != camber_view_key(&zoom->view))
+        return false;
+    zoom->view = *view;
+    camber_plan_patterns_move(&zoom->plan.patterns, view);
+    return true;
 }
 
 void camber_zoom_plan_destroy(camber_zoom_plan *zoom) {

@@ -12,7 +12,8 @@
 typedef struct camber_zoom_plan {
     camber_context *context;
     const camber_features *features;
-    camber_view view; /* of the zoom, at any position, or of the single picture */
+    uint64_t features_key; /* of the features for which the plan of a single picture was made */
+    camber_view view;      /* of the zoom, at any position, or of the single picture */
     double simplify_px;
     float least_importance; /* points between the ends of lines are drawn only if they have at least this importance */
     camber_plan plan;
@@ -41,6 +42,9 @@ camber_status camber_zoom_plan_create(const camber_features *features, const cam
  * have been released. */
 camber_status camber_zoom_plan_create_view(const camber_features *features, const camber_view_desc *desc,
                                            double simplify_px, camber_zoom_plan **zoom);
+/* Moves the plan of a single picture to another place. false: the view differs in more than its place and size, or the
+ * features have changed, so that another plan is needed. */
+bool camber_zoom_plan_move(camber_zoom_plan *zoom, const camber_view *view);
 void camber_zoom_plan_destroy(camber_zoom_plan *zoom);
 /* Returns how far from a polyline pixels are touched, in px. Negative: it is not drawn. */
 static inline float camber_zoom_plan_reach(const camber_zoom_plan *zoom, size_t polyline) {

@@ -24,8 +24,11 @@ static bool find_layer(const camber_page_map *map, size_t number, layer *found) 
         const camber_label_range *range = shapes->ranges + i;
         if (icons ? range->icon_count && range->first_icon == pass->first_polyline
                   : range->ring_count && range->first_ring == pass->first_polyline) {
-            *found = (layer){map->parts.labels->layers + i, pass->paints == shapes->halos};
-            return true;
+            *found = (layer){.halos = pass->paints == shapes->halos};
+            for (size_t k = 0; k < map->parts.labels->layer_count; k++)
+                if (map->parts.labels->layers[k].layer == range->layer)
+                    found->of = map->parts.labels->layers + k;
+            return found->of != NULL;
         }
     }
     return false;

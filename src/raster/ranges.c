@@ -75,6 +75,7 @@ static camber_status add_input(camber_range_list *list, const camber_raster_scen
                                          .part = i,
                                          .first_row = input->first_row,
                                          .is_area = input->is_area,
+                                         .upright = input->upright,
                                          .first_change = list->change_count,
                                          .change_count = change - before,
                                          .changes_before = before};
@@ -120,6 +121,9 @@ unsigned camber_raster_variant(const camber_raster_scene *scene) {
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_slot_range *range,
                                            const camber_raster_area *area) {
     const camber_mesh *mesh = range->mesh;
+    camber_eye eye = scene->eye;
+    if (range->upright && scene->pitched)
+        eye = camber_eye_upright(eye);
     return (camber_setup_args){
         .first = (uint32_t)range->first,
         .end = (uint32_t)range->end,
@@ -135,7 +139,7 @@ camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, con
         .columns = camber_raster_tiles(area->width),
         .rows = camber_raster_tiles(area->height),
         .horizon = (float)scene->horizon,
-        .eye = scene->eye,
+        .eye = eye,
         .first_change = (uint32_t)range->first_change,
         .change_count = (uint32_t)range->change_count,
         .changes_before = (uint32_t)range->changes_before,

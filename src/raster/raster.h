@@ -29,6 +29,7 @@ typedef struct camber_raster_input {
     size_t first, end;
     size_t first_row; /* where its table begins among all rows */
     bool is_area;     /* the polylines are rings to fill: rows that are drawn have a half width of CAMBER_EDGE_PX */
+    bool upright;     /* they are in the picture as it is seen, not in the plane */
     size_t first_change, change_count; /* among the scene's changes */
 } camber_raster_input;
 
@@ -128,7 +129,7 @@ typedef struct camber_slot_range {
     size_t first, end; /* the slots [first, end) of the part */
     size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
-    bool is_area;
+    bool is_area, upright;
     bool among_edges;                  /* there are edges of rings before and after it: see segment.h */
     size_t first_change, change_count; /* the part's changes, in the list */
     size_t changes_before;             /* changes of the same input before this range */

@@ -70,12 +70,12 @@ static void put_words(const camber_segment *s, float brush, float *made) {
     made[CAMBER_SEGMENT_FLAGS] = camber_float_of(s->flags);
 }
 
-static void put_plane(const camber_segment *s, const camber_plane *p, float *made) {
+static void put_plane(const camber_segment *s, const camber_plane *p, camber_eye e, float *made) {
     const float words[] = {
         s->ax,         s->ay,      s->bx,         s->by,          s->ux,          s->uy,      s->nax,     s->nay,
         s->nbx,        s->nby,     s->half_width, p->cut_a.owner, p->cut_b.owner, p->cut_a.x, p->cut_a.y, p->cut_a.at,
         p->cut_a.wide, p->cut_b.x, p->cut_b.y,    p->cut_b.at,    p->cut_b.wide,  p->ends,    p->margin,  p->left[0],
-        p->left[1],    p->left[2], p->right[0],   p->right[1],    p->right[2],    0,          0,          0};
+        p->left[1],    p->left[2], p->right[0],   p->right[1],    p->right[2],    e.cosine,   e.fall,     0};
     _Static_assert(sizeof words == 4 * CAMBER_PLANE_WORDS, "all words of a plane");
     memcpy(made, words, sizeof words);
 }
@@ -123,7 +123,7 @@ static void put_segment(const camber_twin *t, const camber_part_points *part, co
         camber_plane plane;
         drawn = drawn && camber_pitch_segment_of(r->eye, r->horizon, &s, &footprint, &plane);
         if (drawn) {
-            put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * segment);
+            put_plane(&s, &plane, r->eye, t->stages->planes + CAMBER_PLANE_WORDS * segment);
             s = footprint;
         }
     }

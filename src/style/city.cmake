@@ -94,8 +94,8 @@ set(city_tiles_plaza_street_polygons pedestrian service)
 set(city_tiles_plaza_bridges *)
 set(city_tiles_class [=[["coalesce", ["get", "class"], ["get", "kind"], ["get", "pmap:kind"]]]=])
 
-# The lines of each schema: the layers of rivers, rails and roads, the classes of the roads, and the tests for tunnels,
-# bridges and ramps. Protomaps has the names of both versions. A bridge with a roof counts as a tunnel.
+# The lines of each schema: the layers of rivers, rails and roads, and what the schema calls its roads (see osm_class and
+# so on in roads.cmake). Protomaps has the names of both versions.
 set(city_schemas openmaptiles protomaps shortbread)
 set(city_openmaptiles_rivers waterway)
 set(city_openmaptiles_rails transportation)
@@ -103,37 +103,74 @@ set(city_openmaptiles_roads transportation)
 set(city_openmaptiles_class [=[["get", "class"]]=])
 set(city_openmaptiles_tunnel [=[["==", ["get", "brunnel"], "tunnel"]]=])
 set(city_openmaptiles_bridge [=[["==", ["get", "brunnel"], "bridge"]]=])
-set(city_openmaptiles_ramp [=[["==", ["get", "ramp"], 1]]=])
+set(city_openmaptiles_is_ramp [=[["==", ["get", "ramp"], 1]]=])
+set(city_openmaptiles_way [=[["case", ["==", ["get", "class"], "path"], ["coalesce", ["get", "subclass"], "path"], ["get", "class"]]]=])
+set(city_openmaptiles_levels 2)
+set(city_openmaptiles_minor minor)
+set(city_openmaptiles_path platform)
 set(city_protomaps_rivers water physical_line)
 set(city_protomaps_rails roads transit)
 set(city_protomaps_roads roads)
 set(city_protomaps_class [=[["coalesce", ["get", "kind_detail"], ["get", "pmap:kind_detail"]]]=])
 set(city_protomaps_tunnel [=[["any", ["==", ["get", "is_tunnel"], true], ["==", ["get", "pmap:level"], -1]]]=])
 set(city_protomaps_bridge [=[["any", ["==", ["get", "is_bridge"], true], ["==", ["get", "pmap:level"], 1]]]=])
-set(city_protomaps_ramp [=[["any", ["==", ["get", "is_link"], true], ["==", ["get", "pmap:link"], 1]]]=])
+set(city_protomaps_is_ramp "")
+set(city_protomaps_way "${city_protomaps_class}")
+set(city_protomaps_levels 1)
+set(city_protomaps_service alley driveway parking_aisle)
 set(city_shortbread_rivers water_lines)
 set(city_shortbread_rails streets)
 set(city_shortbread_roads streets)
 set(city_shortbread_class [=[["get", "kind"]]=])
 set(city_shortbread_tunnel [=[["==", ["get", "tunnel"], true]]=])
 set(city_shortbread_bridge [=[["all", ["==", ["get", "bridge"], true], ["!=", ["get", "tunnel"], true]]]=])
-set(city_shortbread_ramp [=[["==", ["get", "link"], true]]=])
+set(city_shortbread_is_ramp [=[["==", ["get", "link"], true]]=])
+set(city_shortbread_way "${city_shortbread_class}")
+set(city_shortbread_levels 1)
 
-# The classes of lines, for all schemas and OpenStreetMap. Roads have omt_values_CLASS, and these in addition for a
-# schema.
 set(city_rivers river canal stream drain ditch tidal_channel)
-set(city_rails rail transit light_rail narrow_gauge preserved funicular monorail subway tram)
-set(city_paths path footway cycleway bridleway steps corridor sidewalk crossing track)
-set(city_shortbread_service pedestrian)
-set(city_shortbread_minor residential unclassified living_street)
-set(city_protomaps_service pedestrian alley driveway parking_aisle)
-set(city_protomaps_minor residential unclassified living_street road)
-foreach(class tertiary secondary primary trunk motorway)
-  set(city_protomaps_${class} ${class}_link)
-endforeach()
+set(city_rails_heavy rail narrow_gauge preserved funicular)
+set(city_rails_light transit light_rail monorail subway)
+set(city_rails ${city_rails_heavy} ${city_rails_light} tram)
 
-# The first zoom at which a kind of small areas is drawn. It sets an opacity and not a minzoom, because a scene keeps
-# its network as long as the same layers have features.
+# Other lines: their filters for OpenStreetMap's keys, and for layers of tiles.
+set(city_borders_tiles boundary boundaries)
+set(city_border_level_osm [=[["to-number", ["get", "admin_level"], 99]]=])
+set(city_border_level_boundary [=[["to-number", ["get", "admin_level"], 99]]=])
+set(city_border_level_boundaries [=[["match", ["coalesce", ["get", "kind"], ["get", "pmap:kind"], ""], "country", 2, "region", 4,
+                ["to-number", ["get", "admin_level"], 99]]]=])
+set(city_ferry_osm [=[["==", ["get", "route"], "ferry"]]=])
+set(city_ferry_tiles transportation roads ferries transit)
+set(city_ferry_transportation [=[["==", ["get", "class"], "ferry"]]=])
+set(city_ferry_roads [=[["==", ["get", "kind"], "ferry"]]=])
+set(city_ferry_ferries [=[["has", "kind"]]=])
+set(city_ferry_transit [=[["==", ["get", "pmap:kind"], "ferry"]]=])
+set(city_pier_osm [=[["match", ["get", "man_made"], ["pier", "breakwater", "groyne"], true, false]]=])
+set(city_pier_tiles transportation roads pier_lines)
+set(city_pier_transportation [=[["==", ["get", "class"], "pier"]]=])
+set(city_pier_roads [=[["match", ["coalesce", ["get", "kind_detail"], ["get", "pmap:kind_detail"]], "pier", true, false]]=])
+set(city_pier_pier_lines [=[["has", "kind"]]=])
+set(city_runway_osm [=[["match", ["get", "aeroway"], ["runway", "taxiway"], true, false]]=])
+set(city_runway_tiles aeroway roads streets)
+set(city_runway_class_osm [=[["get", "aeroway"]]=])
+set(city_runway_class_aeroway [=[["get", "class"]]=])
+set(city_runway_class_roads [=[["coalesce", ["get", "kind_detail"], ["get", "pmap:kind_detail"]]]=])
+set(city_runway_class_streets [=[["get", "kind"]]=])
+foreach(layer IN LISTS city_runway_tiles)
+  set(city_runway_${layer} "[\"match\", ${city_runway_class_${layer}}, [\"runway\", \"taxiway\"], true, false]")
+endforeach()
+set(city_lifts cable_car gondola mixed_lift chair_lift drag_lift t-bar j-bar platter rope_tow magic_carpet)
+match_any(city_lift_osm [=[["get", "aerialway"]]=] ${city_lifts})
+set(city_lift_tiles transportation aerialways)
+match_any(city_lift_transportation [=[["get", "class"]]=] aerialway ${city_lifts})
+set(city_lift_aerialways [=[["has", "kind"]]=])
+set(city_works_osm [=[["==", ["get", "highway"], "construction"]]=])
+set(city_works_tiles transportation)
+set(city_works_transportation [=[["in", "_construction", ["to-string", ["get", "class"]]]]=])
+set(city_building_tiles building buildings)
+set(city_hedge_osm [=[["any", ["==", ["get", "barrier"], "hedge"], ["==", ["get", "natural"], "tree_row"]]]=])
+
+# The first zoom at which a kind of small areas is drawn.
 set(city_zoom_pitch 13)
 set(city_zoom_pier 11)
 set(city_zoom_apron 10)
@@ -156,10 +193,17 @@ set(city_light_water    "#a6cfdd")
 set(city_light_pier     "#efe9dd")
 set(city_light_apron    "#e5e1d9")
 set(city_light_plaza    "#fbf8f1")
-set(city_light_building_far "#ece6db")
-set(city_light_building "#e3dacc")
+set(city_light_building_far "#ede7dc")
+set(city_light_building "#e2d8c8")
+set(city_light_building_edge "#c9bca8")
 set(city_light_stream   "#9ac7d8")
-set(city_light_rail     "#a99f95")
+set(city_light_rail     "#9d948d")
+set(city_light_border   "#b39db3")
+set(city_light_ferry    "#6d9db2")
+set(city_light_runway   "#dcd8d2")
+set(city_light_lift     "#8a8178")
+set(city_light_hedge    "#b5cc9d")
+set(city_light_works    "#c9a98a")
 
 set(city_dark_reserve  "#121c1e")
 set(city_dark_built    "#141924")
@@ -174,25 +218,24 @@ set(city_dark_rock     "#1d2127")
 set(city_dark_wetland  "#14282c")
 set(city_dark_ice      "#29353f")
 set(city_dark_pitch    "#1a3026")
-set(city_dark_water    "#14344b")
+set(city_dark_water    "#173d58")
 set(city_dark_pier     "#1c222e")
 set(city_dark_apron    "#20262f")
 set(city_dark_plaza    "#1d2431")
 set(city_dark_building_far "#191f2b")
-set(city_dark_building "#242c3b")
-set(city_dark_stream   "#1b4360")
-set(city_dark_rail     "#505a6d")
+set(city_dark_building "#212937")
+set(city_dark_building_edge "#323d50")
+set(city_dark_stream   "#1f4c6b")
+set(city_dark_rail     "#6a6680")
+set(city_dark_border   "#6f6184")
+set(city_dark_ferry    "#417294")
+set(city_dark_runway   "#2a303b")
+set(city_dark_lift     "#6a7184")
+set(city_dark_hedge    "#1f3a2c")
+set(city_dark_works    "#5b4f47")
 
-# Tests for features with OpenStreetMap's keys: whether one is in a tunnel, and whether it is not from Protomaps 3,
-# which repeats OpenStreetMap's keys in addition to its own classes.
-set(city_tunnel [=[["match", ["to-string", ["get", "tunnel"]], ["", "0", "no", "false"], false, true]]=])
+# A test for features that are not from Protomaps 3, which repeats OpenStreetMap's keys in addition to its own classes.
 set(city_no_schema [=[["!", ["has", "pmap:kind"]]]=])
-
-# Makes a test of whether an expression has one of the values.
-function(city_match out value)
-  list(JOIN ARGN "\", \"" values)
-  set(${out} "[\"match\", ${value}, [\"${values}\"], true, false]" PARENT_SCOPE)
-endfunction()
 
 # Appends a layer that fills areas of a kind, with an id, additional members (head) and a filter.
 function(city_layer out theme kind id head filter)
@@ -214,33 +257,29 @@ function(city_areas out theme kind)
   set(filter "[\"all\", ${city_no_schema}, [\"any\"")
   foreach(key IN LISTS city_keys)
     if(DEFINED city_${kind}_${key})
-      city_match(match "[\"get\", \"${key}\"]" ${city_${kind}_${key}})
+      match_any(match "[\"get\", \"${key}\"]" ${city_${kind}_${key}})
       string(APPEND filter ",\n                ${match}")
     endif()
   endforeach()
-  city_layer(${out} ${theme} ${kind} ${kind} "" "${filter}]]")
+  if(with_osm)
+    city_layer(${out} ${theme} ${kind} ${kind} "" "${filter}]]")
+  endif()
   foreach(layer IN LISTS city_tile_layers)
     if(DEFINED city_tiles_${kind}_${layer})
       set(filter "")
       if(NOT city_tiles_${kind}_${layer} STREQUAL "*")
-        city_match(filter "${city_tiles_class}" ${city_tiles_${kind}_${layer}})
+        match_any(filter "${city_tiles_class}" ${city_tiles_${kind}_${layer}})
       endif()
-      city_layer(${out} ${theme} ${kind} tiles-${layer}-${kind} " \"source-layer\": \"${layer}\"," "${filter}")
+      city_layer(${out} ${theme} ${kind} tiles-${layer}-${kind} "${tile_source} \"source-layer\": \"${layer}\"," "${filter}")
     endif()
   endforeach()
   set(${out} "${${out}}" PARENT_SCOPE)
 endfunction()
 
-# Appends a layer made from a template, with the template's variables filled in.
-macro(city_append out template)
-  string(CONFIGURE "${template}" city_text @ONLY)
-  string(STRIP "${city_text}" city_text)
-  string(APPEND ${out} ",\n    ${city_text}")
-endmacro()
-
 set(city_template_building [=[
     {"id": "@ID@", "type": "fill",@HEAD@
      "paint": {"fill-color": ["interpolate", ["linear"], ["zoom"], 13.5, "@BUILDING_FAR@", 15, "@BUILDING@"],
+               "fill-outline-color": ["step", ["zoom"], "rgba(0, 0, 0, 0)", 15, "@BUILDING_EDGE@"],
                "fill-opacity": ["step", ["zoom"], 0, 13.5, 1]}}]=])
 set(city_template_river [=[
     {"id": "@ID@", "type": "line",@HEAD@
@@ -248,96 +287,226 @@ set(city_template_river [=[
      "paint": {"line-color": ["match", @CLASS@, ["river", "canal"], "@WATER@", "@STREAM@"],
                "line-width": ["interpolate", ["exponential", 1.4], ["zoom"],
                               8, ["match", @CLASS@, "river", 0.6, "canal", 0.5, 0],
-                              12, ["match", @CLASS@, "river", 2, "canal", 1.5, 0.6],
+                              11, ["match", @CLASS@, "river", 1.5, "canal", 1, 0],
+                              12, ["match", @CLASS@, "river", 2, "canal", 1.5, 0.5],
                               16, ["match", @CLASS@, "river", 6, "canal", 5, 2],
                               20, ["match", @CLASS@, "river", 26, "canal", 22, 8]]}}]=])
 set(city_template_rail [=[
     {"id": "@ID@", "type": "line",@HEAD@
+     "filter": @FILTER@,
      "layout": {"line-join": "round", "line-round-limit": 1},
      "paint": {"line-color": "@RAIL@",
-               "line-width": ["interpolate", ["exponential", 1.4], ["zoom"], 8, 0, 9, 0.4, 14, 1, 16, 1.6, 20, 5.5]}}]=])
+               "line-width": ["let", "kind", ["case", ["has", "service"], 3, @KIND@],
+                 ["interpolate", ["exponential", 1.4], ["zoom"],
+                   8, 0, 9, ["at", ["var", "kind"], ["literal", [0.4, 0, 0, 0]]],
+                   11, ["at", ["var", "kind"], ["literal", [0.6, 0.4, 0, 0]]],
+                   13, ["at", ["var", "kind"], ["literal", [0.8, 0.8, 0.4, 0]]],
+                   14, ["at", ["var", "kind"], ["literal", [1, 1, 0.7, 0.5]]],
+                   16, ["at", ["var", "kind"], ["literal", [1.5, 1.5, 1.1, 0.8]]],
+                   20, ["at", ["var", "kind"], ["literal", [4.5, 4.5, 3, 2.5]]]]]}}]=])
+set(city_template_ties [=[
+    {"id": "@ID@-ties", "type": "line",@HEAD@
+     "filter": @FILTER@,
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@RAIL@", "line-dasharray": [0.3, 2],
+               "line-width": ["let", "kind", ["case", ["has", "service"], 3, @KIND@],
+                 ["interpolate", ["exponential", 1.4], ["zoom"],
+                   13.9, 0, 14, ["at", ["var", "kind"], ["literal", [2.6, 0, 0, 0]]],
+                   16, ["at", ["var", "kind"], ["literal", [4.6, 0, 0, 0]]],
+                   20, ["at", ["var", "kind"], ["literal", [15, 0, 0, 0]]]]]}}]=])
+set(city_template_border [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@, ["<=", @LEVEL@, 8]],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@BORDER@", "line-dasharray": ["step", @LEVEL@, ["literal", [7, 2]], 3, ["literal", [4, 2, 1, 2]]],
+               "line-width": ["interpolate", ["exponential", 1.2], ["zoom"],
+                              4, ["step", @LEVEL@, 0.7, 3, 0], 8, ["step", @LEVEL@, 1, 3, 0.6, 5, 0],
+                              11.9, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0], 12, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0.5],
+                              18, ["step", @LEVEL@, 2.6, 3, 2, 5, 1.3]]}}]=])
+set(city_template_ferry [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@FERRY@", "line-dasharray": [5, 3],
+               "line-width": ["interpolate", ["exponential", 1.2], ["zoom"], 7.9, 0, 8, 0.6, 14, 1, 18, 2]}}]=])
+set(city_template_pier [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@PIER@",
+               "line-width": ["interpolate", ["exponential", 1.6], ["zoom"], 11.9, 0, 12, 0.6, 14, 1.4, 16, 4, 18, 12, 22, 180]}}]=])
+set(city_template_runway [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@RUNWAY@",
+               "line-width": ["interpolate", ["exponential", 1.6], ["zoom"],
+                              9.9, 0, 10, ["match", @CLASS@, "runway", 1.2, 0.3], 14, ["match", @CLASS@, "runway", 8, 2],
+                              18, ["match", @CLASS@, "runway", 90, 25], 22, ["match", @CLASS@, "runway", 1400, 400]]}}]=])
+set(city_template_lift [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@LIFT@",
+               "line-width": ["interpolate", ["exponential", 1.3], ["zoom"], 11.9, 0, 12, 0.6, 16, 1.2, 20, 3]}},
+    {"id": "@ID@-ties", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@LIFT@", "line-dasharray": [0.3, 4],
+               "line-width": ["interpolate", ["exponential", 1.3], ["zoom"], 12.9, 0, 13, 3, 16, 5, 20, 12]}}]=])
+set(city_template_works [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@WORKS@", "line-dasharray": [2, 1.5],
+               "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 12.9, 0, 13, 0.8, 14, 1.5, 16, 3, 20, 14]}}]=])
+set(city_template_hedge [=[
+    {"id": "@ID@", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@],
+     "layout": {"line-cap": "round", "line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@HEDGE@", "line-width": ["interpolate", ["exponential", 1.6], ["zoom"], 16.9, 0, 17, 2, 20, 8]}}]=])
 
-# Areas get no line around them.
-set(city_no_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
-
-# Appends the rivers or rails that are not in tunnels, for OpenStreetMap's keys and for the layers of each schema.
-macro(city_lines out kind key)
-  city_match(match "[\"get\", \"${key}\"]" ${city_${kind}s})
-  set(CLASS "[\"get\", \"${key}\"]")
-  set(ID ${kind})
-  set(HEAD "\n     \"filter\": [\"all\", ${city_no_area}, ${city_no_schema}, ${match},\n                [\"!\", ${city_tunnel}]],")
-  city_append(${out} "${city_template_${kind}}")
-  city_match(match "${city_tiles_class}" ${city_${kind}s})
+# Appends the rivers that are not in tunnels, for OpenStreetMap's keys and for the layers of each schema. Areas get no
+# line around them.
+macro(city_append_rivers out)
+  match_any(match "[\"get\", \"waterway\"]" ${city_rivers})
+  set(CLASS "[\"get\", \"waterway\"]")
+  set(ID river)
+  set(HEAD "\n     \"filter\": [\"all\", ${not_area}, ${city_no_schema}, ${match},\n                [\"!\", ${osm_tunnel}]],")
+  if(with_osm)
+    append_layer(${out} "${city_template_river}")
+  endif()
+  match_any(match "${city_tiles_class}" ${city_rivers})
   set(CLASS "${city_tiles_class}")
   foreach(schema IN LISTS city_schemas)
-    foreach(layer IN LISTS city_${schema}_${kind}s)
-      set(ID tiles-${layer}-${kind})
-      set(HEAD " \"source-layer\": \"${layer}\",\n     \"filter\": [\"all\", ${city_no_area}, ${match},\n                ")
+    foreach(layer IN LISTS city_${schema}_rivers)
+      set(ID tiles-${layer}-river)
+      set(HEAD "${tile_source} \"source-layer\": \"${layer}\",\n     \"filter\": [\"all\", ${not_area}, ${match},\n                ")
       string(APPEND HEAD "[\"!\", ${city_${schema}_tunnel}]],")
-      city_append(${out} "${city_template_${kind}}")
+      append_layer(${out} "${city_template_river}")
     endforeach()
   endforeach()
 endmacro()
 
-# Appends everything above the areas: buildings, rivers, rails, and the roads of tiles in the same colours as other
-# roads.
+# Sets the class of rails to the value of an expression.
+macro(prepare_rails value)
+  match_any(is_rail "${value}" ${city_rails})
+  list(JOIN city_rails_heavy "\", \"" heavy)
+  list(JOIN city_rails_light "\", \"" light)
+  set(KIND "[\"match\", ${value}, [\"${heavy}\"], 0, [\"${light}\"], 1, 2]")
+endmacro()
+
+# Appends the rails of a level; append_network calls this.
+macro(append_rails out id level test)
+  set(FILTER "[\"all\", ${not_area}, ${is_rail}, ${test}]")
+  if("${level}" STREQUAL "bridge")
+    append_bed(${out} ${id}rail 3.4 6 60)
+  endif()
+  set(ID ${id}rail)
+  append_layer(${out} "${city_template_rail}")
+  append_layer(${out} "${city_template_ties}")
+endmacro()
+
+# Appends the lines of a kind that has a template, for OpenStreetMap's keys and for layers of tiles.
+macro(city_append_lines out kind)
+  set(NO_AREA "${not_area}")
+  set(ID ${kind}-line)
+  set(HEAD "")
+  set(TEST "[\"all\", ${city_no_schema}, ${city_${kind}_osm}]")
+  set(CLASS "${city_${kind}_class_osm}")
+  if(with_osm)
+    append_layer(${out} "${city_template_${kind}}")
+  endif()
+  foreach(layer IN LISTS city_${kind}_tiles)
+    set(ID tiles-${layer}-${kind}-line)
+    set(HEAD "${tile_source} \"source-layer\": \"${layer}\",")
+    set(TEST "${city_${kind}_${layer}}")
+    set(CLASS "${city_${kind}_class_${layer}}")
+    append_layer(${out} "${city_template_${kind}}")
+  endforeach()
+endmacro()
+
+macro(city_append_borders out)
+  set(NO_AREA "${not_area}")
+  set(ID border)
+  set(HEAD "")
+  set(TEST "[\"==\", [\"get\", \"boundary\"], \"administrative\"]")
+  set(LEVEL "${city_border_level_osm}")
+  if(with_osm)
+    append_layer(${out} "${city_template_border}")
+  endif()
+  foreach(layer IN LISTS city_borders_tiles)
+    set(ID tiles-${layer}-border)
+    set(HEAD "${tile_source} \"source-layer\": \"${layer}\",")
+    set(TEST "[\"match\", [\"to-string\", [\"get\", \"maritime\"]], [\"1\", \"true\"], false, true]")
+    set(LEVEL "${city_border_level_${layer}}")
+    append_layer(${out} "${city_template_border}")
+  endforeach()
+endmacro()
+
+# Appends everything above the areas: buildings, lines, and the roads of tiles in the same colours as other roads.
 function(city_details out theme)
-  foreach(color building building_far water stream rail)
+  set(ID building)
+  set(HEAD "\n     \"filter\": [\"match\", [\"to-string\", [\"get\", \"building\"]], [\"\", \"no\"], false, true],")
+  if(with_osm)
+    append_layer(${out} "${city_template_building}")
+  endif()
+  foreach(layer IN LISTS city_building_tiles)
+    set(ID tiles-${layer})
+    set(HEAD "${tile_source} \"source-layer\": \"${layer}\",")
+    append_layer(${out} "${city_template_building}")
+  endforeach()
+  foreach(kind hedge pier runway ferry)
+    city_append_lines(${out} ${kind})
+  endforeach()
+  city_append_borders(${out})
+  city_append_lines(${out} works)
+
+  foreach(schema IN LISTS city_schemas)
+    prepare_rails("${city_${schema}_class}")
+    set(layer ${city_${schema}_roads})
+    set(HEAD "${tile_source} \"source-layer\": \"${layer}\",")
+    append_network(${out} ${theme} city_${schema} tiles-${layer}- rails)
+  endforeach()
+  if(with_osm)
+    set(HEAD " \"source-layer\": \"transit\",")
+    prepare_rails("${city_protomaps_class}")
+    append_rails(${out} tiles-transit- ground "[\"!\", [\"any\", ${city_protomaps_tunnel}, ${city_protomaps_bridge}]]")
+    append_rails(${out} tiles-transit-bridge- bridge "${city_protomaps_bridge}")
+    set(HEAD "")
+    prepare_rails("[\"get\", \"railway\"]")
+    set(is_rail "[\"all\", ${city_no_schema}, ${is_rail}]")
+    append_network(${out} ${theme} osm "" rails)
+  endif()
+  city_append_lines(${out} lift)
+  set(${out} "${${out}}" PARENT_SCOPE)
+endfunction()
+
+# Appends the areas and lines. with_osm: for OpenStreetMap's keys, too, and not only for the layers of tiles.
+# tile_source: members of the layers that draw tiles.
+function(city_layers out theme)
+  foreach(color building building_far building_edge water stream rail border ferry pier runway lift hedge works)
     string(TOUPPER ${color} name)
     set(${name} "${city_${theme}_${color}}")
   endforeach()
-  foreach(color path track)
-    string(TOUPPER ${color} name)
-    list(GET ${theme}_${color} 1 ${name})
+  foreach(kind IN LISTS city_kinds)
+    # The middle of a river shows only where there is no area of water.
+    if(kind STREQUAL "water")
+      city_append_rivers(${out})
+    endif()
+    city_areas(${out} ${theme} ${kind})
   endforeach()
-  set(CASING_BRIDGE "${${theme}_casing_bridge}")
-
-  set(ID building)
-  set(HEAD "\n     \"filter\": [\"match\", [\"to-string\", [\"get\", \"building\"]], [\"\", \"no\"], false, true],")
-  city_append(${out} "${city_template_building}")
-  foreach(layer building buildings)
-    set(ID tiles-${layer})
-    set(HEAD " \"source-layer\": \"${layer}\",")
-    city_append(${out} "${city_template_building}")
-  endforeach()
-  city_lines(${out} river waterway)
-  city_lines(${out} rail railway)
-
-  foreach(name IN LISTS omt_classes ITEMS paper casing_bridge)
-    set(omt_city_${name} "${${theme}_${name}}")
-    set(known_${name} ${omt_values_${name}})
-  endforeach()
-  file(READ ${PROJECT_SOURCE_DIR}/src/style/city.json.in roads)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/style/city.json.in)
-  foreach(schema IN LISTS city_schemas)
-    set(LAYER ${city_${schema}_roads})
-    foreach(name class tunnel bridge ramp)
-      string(TOUPPER ${name} upper)
-      set(${upper} "${city_${schema}_${name}}")
-      set(omt_${name} "${city_${schema}_${name}}")
-    endforeach()
-    foreach(name IN LISTS omt_classes)
-      set(omt_values_${name} ${known_${name}} ${city_${schema}_${name}})
-    endforeach()
-    city_match(IS_PATH "${CLASS}" ${city_paths})
-    omt_roads(city)
-    foreach(filter IS_ROAD IS_PATH)
-      set(${filter} "[\"all\", ${city_no_area}, ${${filter}}]")
-    endforeach()
-    city_append(${out} "${roads}")
-  endforeach()
+  city_details(${out} ${theme})
   set(${out} "${${out}}" PARENT_SCOPE)
 endfunction()
 
 # Writes city-THEME.json into the folder.
 function(city_style theme folder)
+  set(with_osm ON)
+  set(tile_source "")
   set(layers ",\n    {\"id\": \"plain-area\", \"type\": \"fill\", \"metadata\": {\"camber:plain\": true},\n")
   string(APPEND layers "     \"paint\": {\"fill-color\": [\"global-state\", \"plain-fill\"]}}")
-  foreach(kind IN LISTS city_kinds)
-    city_areas(layers ${theme} ${kind})
-  endforeach()
-  city_details(layers ${theme})
-  road_layers(layers ${theme})
+  city_layers(layers ${theme})
   plain_lines(layers line "[\"!=\", [\"geometry-type\"], \"Point\"]" 0)
   plain_lines(layers point "[\"==\", [\"geometry-type\"], \"Point\"]" 4)
   label_layers(layers ${theme} ON ${label_kinds})

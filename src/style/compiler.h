@@ -75,6 +75,7 @@ struct camber_compiler {
     const json_t *state;        /* an object with the values of "global-state". NULL: no values */
     bool state_defaults;        /* its members are {"default": value}, as in a style */
     unsigned constant_warnings; /* warnings about constants so far, at most CAMBER_CONSTANT_WARNING_LIMIT */
+    bool leaves_out;            /* the current layer has an operator that is not supported, so it is left out */
     bool checks;                /* a style is being checked: also warn about valid values that may surprise */
     bool strict; /* a property must be an expression or a function: no plain lists, no check of enum values */
     /* Receives messages instead of the log; path has the position. NULL: messages are logged */

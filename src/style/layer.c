@@ -356,9 +356,18 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     const unsigned kinds = camber_style_layer_kinds(kind);
     c->readers = json_object_get(json, "source-layer") ? (camber_property_readers){.named_kinds = kinds}
                                                        : (camber_property_readers){.kinds = kinds};
+    const size_t depth = c->path_length;
     const bool done = read_layer(d, json, layer);
     c->readers = (camber_property_readers){0};
-    return done;
+    if (!c->leaves_out || (c->status != CAMBER_OK && c->status != CAMBER_ERROR_INPUT))
+        return done;
+    c->leaves_out = false;
+    c->status = CAMBER_OK;
+    c->path_length = depth;
+    camber_style_layer_free(c->context, layer);
+    memset(layer, 0, sizeof *layer);
+    style->layer_count--;
+    return true;
 }
 
 static bool read_any_layer(camber_document *d, json_t *json) {

@@ -1,163 +1,32 @@
-# A road style for vector tiles of the OpenMapTiles schema: a table of classes and two palettes for
-# openmaptiles.json.in.
-#
-# One layer draws the casings of all classes of a level, and another one their fills. Widths and colours depend on the
-# class, and a sort key puts minor roads below major ones.
+# The style for vector tiles of the OpenMapTiles schema that the style itself names: what the style city draws of such
+# tiles, with a source.
 
-set(omt_zooms 4 9 12 14 16 18 22)
-# How much wider a casing is than its fill, in CSS px at these zooms.
-set(omt_casing_none 0 0 0 0 0 0 0)
-set(omt_casing_ground 0 0.3 0.5 1.4 2.1 3.2 16)
-set(omt_casing_bridge 0 0.5 0.9 2.1 3.3 5 28)
-
-# Widths of fills, in CSS px at these zooms. The classes are those of the schema, in drawing order.
-set(omt_classes service minor tertiary secondary primary trunk motorway)
-set(omt_values_service service busway bus_guideway raceway)
-set(omt_values_minor minor)
-foreach(class tertiary secondary primary trunk motorway)
-  set(omt_values_${class} ${class})
-endforeach()
-set(omt_width_service   0   0   0.5 1.4 4.6  14 210)
-set(omt_width_minor     0   0.4 0.9 2.6 8.5  26 390)
-set(omt_width_tertiary  0.4 0.7 1.5 3.4 10.5 31 460)
-set(omt_width_secondary 0.5 0.9 2   4.2 12   35 520)
-set(omt_width_primary   0.6 1.2 2.5 5   13.5 40 600)
-set(omt_width_trunk     0.8 1.4 2.8 5.4 14.5 43 640)
-set(omt_width_motorway  0.9 1.6 3.2 6   16   48 700)
-
-# Colours of fills in close-ups, of fills in whole cities, whose roads are too thin to be white, and of casings.
-set(omt_light_paper "#f4f4f0")
-set(omt_light_casing_bridge "#7b848b")
-set(omt_light_service   "#ffffff" "#dcdfde" "#cfd3d3")
-set(omt_light_minor     "#ffffff" "#d0d5d5" "#c3c9ca")
-set(omt_light_tertiary  "#ffffff" "#b9c0c2" "#b3babc")
-set(omt_light_secondary "#fdf0cb" "#e2cf97" "#d2bd80")
-set(omt_light_primary   "#fbda8f" "#eec06a" "#d6a54a")
-set(omt_light_trunk     "#f5ab64" "#f09c50" "#cb7a33")
-set(omt_light_motorway  "#e87a5b" "#e26d4d" "#b34a2e")
-set(omt_light_path "#bdb29c")
-set(omt_light_track "#bfa97c")
-set(omt_light_rail "#8d8799")
-set(omt_light_transit "#8f7fb5")
-set(omt_light_water "#8dbdd8")
-set(omt_light_stream "#a3cbe0")
-set(omt_light_ferry "#6f9fc4")
-set(omt_light_boundary "#a98bbb")
-set(omt_light_boundary_band "#e9e3ec")
-set(omt_light_runway "#d9dbe3")
-set(omt_light_runway_casing "#b9bccb")
-set(omt_light_pier "#d2d0c6")
-set(omt_light_works "#d08a6e")
-
-set(omt_dark_paper "#12161d")
-set(omt_dark_casing_bridge "#66728a")
-set(omt_dark_service   "#2c3442" "#232a35" "#0b0e13")
-set(omt_dark_minor     "#3c4658" "#303947" "#0b0e13")
-set(omt_dark_tertiary  "#536078" "#47536a" "#0b0e13")
-set(omt_dark_secondary "#75704f" "#6a6546" "#0b0e13")
-set(omt_dark_primary   "#a98a4c" "#977a40" "#0b0e13")
-set(omt_dark_trunk     "#cb8a4c" "#bc7c40" "#0b0e13")
-set(omt_dark_motorway  "#e07a57" "#d66c48" "#0b0e13")
-set(omt_dark_path "#5f6a5c")
-set(omt_dark_track "#6b5f42")
-set(omt_dark_rail "#6c6880")
-set(omt_dark_transit "#7767a5")
-set(omt_dark_water "#2c5876")
-set(omt_dark_stream "#254a63")
-set(omt_dark_ferry "#3f7096")
-set(omt_dark_boundary "#79608a")
-set(omt_dark_boundary_band "#231d2b")
-set(omt_dark_runway "#2b2f3b")
-set(omt_dark_runway_casing "#454b5d")
-set(omt_dark_pier "#2c3036")
-set(omt_dark_works "#8f5a45")
-
-# A road's class, and whether it is a ramp. The style city replaces these for other schemas.
-set(omt_class [=[["get", "class"]]=])
-set(omt_ramp [=[["==", ["get", "ramp"], 1]]=])
-
-# Makes ["match", class, ...] with one value of the list for each class.
-function(omt_match out)
-  set(text "[\"match\", ${omt_class}")
-  foreach(class value IN ZIP_LISTS omt_classes ARGN)
-    list(JOIN omt_values_${class} "\", \"" values)
-    string(APPEND text ", [\"${values}\"], ${value}")
-    set(last ${value})
-  endforeach()
-  set(${out} "${text}, ${last}]" PARENT_SCOPE)
-endfunction()
-
-# Makes curves over the zoom. Each value depends on the class; ramps have three fifths of it. A casing adds the same
-# width to all classes.
-function(omt_width out casing)
-  set(text "[\"interpolate\", [\"exponential\", 1.6], [\"zoom\"]")
-  foreach(zoom extra IN ZIP_LISTS omt_zooms ${casing})
-    list(FIND omt_zooms ${zoom} at)
-    set(widths "")
-    foreach(class IN LISTS omt_classes)
-      list(GET omt_width_${class} ${at} width)
-      list(APPEND widths ${width})
-    endforeach()
-    omt_match(width ${widths})
-    set(width "[\"*\", [\"case\", ${omt_ramp}, 0.6, 1],\n                        ${width}]")
-    if(extra)
-      set(width "[\"+\", ${extra}, ${width}]")
-    endif()
-    string(APPEND text ",\n                      ${zoom}, ${width}")
-  endforeach()
-  set(${out} "${text}]" PARENT_SCOPE)
-endfunction()
-
-# Makes the colours of close-ups and of whole cities. Tunnels are mixed halfway with the paper, so they are paler
-# without being translucent.
-function(omt_colors theme)
-  foreach(index distance IN ZIP_LISTS omt_indices omt_distances)
-    set(colors "")
-    foreach(class IN LISTS omt_classes)
-      list(GET omt_${theme}_${class} ${index} color)
-      list(APPEND colors "\"${color}\"")
-    endforeach()
-    omt_match(${distance} ${colors})
-    set(pale_${distance} "[\"interpolate\", [\"linear\"], 0.45, 0, \"${omt_${theme}_paper}\", 1, ${${distance}}]")
-  endforeach()
-  set(zoomed "[\"interpolate\", [\"linear\"], [\"zoom\"],\n                     ")
-  set(ROAD_COLOR "${zoomed} 12.5, ${far},\n                      14.5, ${near}]" PARENT_SCOPE)
-  set(CASING_COLOR "${casing}" PARENT_SCOPE)
-  set(TUNNEL_COLOR "${zoomed} 12.5, ${pale_far},\n                      14.5, ${pale_near}]" PARENT_SCOPE)
-endfunction()
-set(omt_indices 0 1 2)
-set(omt_distances near far casing)
-
-# Sets the variables of road layers: their filters, widths, colours and order.
-function(omt_roads theme)
-  omt_width(ROAD_WIDTH omt_casing_none)
-  omt_width(ROAD_CASING omt_casing_ground)
-  omt_width(BRIDGE_CASING omt_casing_bridge)
-  omt_colors(${theme})
-  # A ramp is below the roads that it leads to. A bridge over another bridge, and a tunnel under another tunnel, have a
-  # layer.
-  omt_match(order 0 1 2 3 4 5 6)
-  set(CLASS_ORDER "[\"-\", ${order}, [\"case\", ${omt_ramp}, 2.5, 0]]")
-  set(LAYER_ORDER "[\"+\", [\"*\", 10, [\"to-number\", [\"get\", \"layer\"], 0]], ${CLASS_ORDER}]")
-  set(values "")
-  foreach(class IN LISTS omt_classes)
-    list(APPEND values ${omt_values_${class}})
-  endforeach()
-  list(JOIN values "\", \"" values)
-  set(IS_ROAD "[\"match\", ${omt_class}, [\"${values}\"], true, false]")
-  foreach(name ROAD_WIDTH ROAD_CASING BRIDGE_CASING ROAD_COLOR CASING_COLOR TUNNEL_COLOR CLASS_ORDER LAYER_ORDER IS_ROAD)
-    set(${name} "${${name}}" PARENT_SCOPE)
-  endforeach()
-endfunction()
+set(omt_metadata [=[
+  "metadata": {
+    "camber:tiles": "Vector tiles of the OpenMapTiles schema. \"url\" of the source says where: mbtiles://FILE, pmtiles://FILE or a TileJSON file; or \"tiles\": [\"FOLDER/{z}/{x}/{y}.pbf\"]. A path is relative to the style, or to the working folder where the style is named and not a file.",
+    "camber:missing": {"openmaptiles": "tilemaker makes it of an OpenStreetMap extract, as man camber shows under STYLES; or name other tiles in a copy of the style"}
+  },]=])
+set(omt_sources [=["openmaptiles": {"type": "vector", "url": "mbtiles://openmaptiles.mbtiles",
+                               "attribution": "(c) OpenMapTiles, (c) OpenStreetMap contributors"}]=])
 
 # Writes openmaptiles-THEME.json into the folder.
 function(openmaptiles_style theme folder)
-  set(THEME ${theme})
-  omt_roads(${theme})
-  foreach(color paper casing_bridge path track rail transit water stream ferry boundary boundary_band runway
-          runway_casing pier works)
-    string(TOUPPER ${color} name)
-    set(${name} "${omt_${theme}_${color}}")
+  set(with_osm OFF)
+  set(tile_source " \"source\": \"openmaptiles\",")
+  # The schema's layers, of those that the style city knows.
+  set(city_schemas openmaptiles)
+  set(city_tile_layers park landuse landcover water aeroway transportation)
+  set(city_building_tiles building)
+  set(city_borders_tiles boundary)
+  foreach(kind pier ferry works lift)
+    set(city_${kind}_tiles transportation)
   endforeach()
-  configure_file(${PROJECT_SOURCE_DIR}/src/style/openmaptiles.json.in ${folder}/openmaptiles-${theme}.json @ONLY)
+  set(city_runway_tiles aeroway)
+  set(label_tile_layers place transportation_name waterway water_name park mountain_peak poi aerodrome_label housenumber)
+  set(layers "")
+  city_layers(layers ${theme})
+  label_layers(layers ${theme} ON ${label_kinds})
+  set(METADATA "${omt_metadata}")
+  set(SOURCES "${omt_sources}")
+  road_document(openmaptiles ${theme} "${layers}" ${folder})
 endfunction()

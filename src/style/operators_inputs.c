@@ -329,13 +329,21 @@ bool camber_evaluate_error(camber_evaluation *e, const camber_node *node, camber
     return camber_evaluate_string(e, node, 0, &message) && camber_evaluate_fail(e, message);
 }
 
+/* Operators that the specification has, but that are not supported: a layer that uses one is left out. Some of them
+ * need a feature's geometry, while layers are evaluated once for all features with the same properties. */
 static bool compile_unsupported(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                 uint32_t *node) {
     (void)array;
     (void)expected;
     (void)node;
     camber_compiler_enter_index(c, 0);
-    return camber_compiler_fail(c, "\"%s\" is not supported; leave it out", row->name);
+    if (!c->readers.kinds && !c->readers.named_kinds)
+        return camber_compiler_fail(c, "\"%s\" is not supported; leave it out", row->name);
+    if (!c->leaves_out)
+        camber_compiler_warn(c, "\"%s\" is not supported, so the layer is left out", row->name);
+    c->leaves_out = true;
+    c->status = CAMBER_ERROR_INPUT;
+    return false;
 }
 
 static const camber_operator rows[] = {

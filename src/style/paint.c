@@ -25,7 +25,8 @@ bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, co
 }
 
 bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature) {
-    return layer->visible && passes_filter(layer->filter, layer->min_zoom, feature);
+    const bool at_some_zoom = layer->kind == CAMBER_LAYER_SYMBOL && layer->filter && layer->filter->reads_zoom;
+    return layer->visible && (at_some_zoom || passes_filter(layer->filter, layer->min_zoom, feature));
 }
 
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {

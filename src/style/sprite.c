@@ -6,6 +6,7 @@
 
 #include "features/features.h"
 #include "style/json.h"
+#include "style/signs.h"
 #include "style/symbol.h"
 #include "style/url.h"
 
@@ -194,15 +195,11 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
     return status;
 }
 
-static camber_status load_index(index_reader *r) {
+static camber_status read_index(index_reader *r, const char *bytes, size_t size_bytes) {
     camber_context *context = r->sprites->context;
-    char *bytes = NULL;
-    size_t size_bytes;
     json_t *root = NULL, *value;
     const char *name;
-    camber_status status = camber_read_file(context, r->path, CAMBER_NAMED_BY_STYLE, &bytes, &size_bytes);
-    if (status == CAMBER_OK)
-        status = camber_json_read(context, bytes, size_bytes, r->path, &root);
+    camber_status status = camber_json_read(context, bytes, size_bytes, r->path, &root);
     if (status == CAMBER_OK && !json_is_object(root))
         status =
             camber_fail(context, CAMBER_ERROR_INPUT, "%s: expected an object of images; get the sprite again", r->path);
@@ -211,6 +208,16 @@ static camber_status load_index(index_reader *r) {
             status = add_image(r, name, value);
     }
     json_decref(root);
+    return status;
+}
+
+static camber_status load_index(index_reader *r) {
+    camber_context *context = r->sprites->context;
+    char *bytes = NULL;
+    size_t size_bytes;
+    camber_status status = camber_read_file(context, r->path, CAMBER_NAMED_BY_STYLE, &bytes, &size_bytes);
+    if (status == CAMBER_OK)
+        status = read_index(r, bytes, size_bytes);
     camber_free(context, bytes);
     return status;
 }
@@ -243,6 +250,16 @@ static camber_status load_density(camber_sprites *sprites, const camber_style_sp
     camber_free(context, index);
     camber_free(context, sheet);
     return status;
+}
+
+/* Loads the sprite of the styles that ship, which needs no files. */
+static camber_status load_signs(camber_sprites *sprites, const camber_style_sprite *sprite) {
+    index_reader r = {.sprites = sprites, .path = CAMBER_SIGNS_URL, .id = sprite->id, .sheet = sprites->sheet_count};
+    const camber_status status = camber_signs_draw(sprites->context, sprites->sheets + r.sheet);
+    if (status != CAMBER_OK)
+        return status;
+    sprites->sheet_count++;
+    return read_index(&r, camber_signs_index, strlen(camber_signs_index));
 }
 
 static camber_status find_file(camber_context *context, const char *path, const char *tail, bool *found) {
@@ -289,6 +306,12 @@ static camber_status load_sprites(camber_sprites *sprites, const camber_style *s
         camber_url url = {0};
         if (camber_url_is_remote(sprite->url)) {
             warn_left_out(sprites, sprite);
+            continue;
+        }
+        if (strcmp(sprite->url, CAMBER_SIGNS_URL) == 0) {
+            const camber_status status = load_signs(sprites, sprite);
+            if (status != CAMBER_OK)
+                return status;
             continue;
         }
         camber_status status = camber_url_resolve(sprites->context, "sprite", sprite->url, base_path, &url);

@@ -222,7 +222,8 @@ bool camber_style_source_matches(const camber_style_source *source, const camber
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
 /* Whether the layer may draw features of a geometry type, such as "Polygon". */
 bool camber_style_layer_may_take(const camber_style_layer *layer, const char *type);
-/* Whether the layer is visible and the feature passes its filter, evaluated at the layer's lowest zoom. */
+/* Whether the layer is visible and the feature passes its filter, evaluated at the layer's lowest zoom. If the filter
+ * of a symbol layer reads the zoom, every feature passes. */
 bool camber_style_layer_takes(const camber_style_layer *layer, const camber_feature_view *feature);
 
 typedef enum camber_translate_anchor {

@@ -369,6 +369,24 @@ static bool read_text(const reader *r) {
     return true;
 }
 
+/* Reads the size of text that decides where labels are along lines: the same at all zooms, so that labels do not move
+ * along their lines while a map zooms. */
+static void read_anchor_size(const reader *r) {
+    static const double zoom = 18.0;
+    camber_symbol *symbol = &r->to->symbol;
+    const camber_expression *expression = r->layer->properties[CAMBER_TEXT_SIZE];
+    const double zoom_of_view = r->evaluation->zoom;
+    camber_value value;
+    symbol->anchor_text_px = symbol->text_size_px;
+    if (symbol->placement == CAMBER_SYMBOL_POINT || !expression || !expression->reads_zoom)
+        return;
+    r->evaluation->zoom = zoom;
+    if (evaluate(r, CAMBER_TEXT_SIZE, &value) && value.type == CAMBER_VALUE_NUMBER && value.number >= 0.0 &&
+        isfinite(value.number))
+        symbol->anchor_text_px = value.number;
+    r->evaluation->zoom = zoom_of_view;
+}
+
 static bool read_icon(const reader *r) {
     camber_value value;
     if (!evaluate(r, CAMBER_ICON_IMAGE, &value) || value.type != CAMBER_VALUE_STRING || !value.string[0])
@@ -387,6 +405,7 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
     read_fields(&r);
     read_writing_modes(&r);
     read_anchors(&r);
+    read_anchor_size(&r);
     const bool done = read_icon(&r) && read_text(&r);
     camber_evaluation_end(&evaluation);
     if (!done)

@@ -89,7 +89,8 @@ typedef struct camber_symbol {
     camber_symbol_section *sections; /* section_count of them. 0: no text */
     size_t section_count;
     double text_size_px;
-    double max_width_em; /* 0 along lines, where text does not break */
+    double anchor_text_px; /* the text's size at zoom 18, which decides where labels are along lines at all zooms */
+    double max_width_em;   /* 0 along lines, where text does not break */
     double line_height_em, letter_spacing_em;
     camber_text_justify justify;
     camber_text_anchor text_anchor;

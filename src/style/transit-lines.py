@@ -8,7 +8,8 @@ slots next to each other.
 Ways within 25 m of each other, such as the tracks of a line, are joined into one, with the routes of all of them. A
 stretch with n routes becomes n features, each with its "slot". Slot 0 is the middle; from left to right, as seen in the
 stretch's direction, the routes are ordered by mode, colour and number. Stretches that continue each other have the same
-direction. Only Python's standard library is needed."""
+direction. The first feature of a stretch has the numbers of all its routes ("refs"). A station is a point: the stops of
+one name that are within 300 m, moved to the nearest street of routes. Only Python's standard library is needed."""
 
 import collections
 import json
@@ -22,6 +23,7 @@ SHORT_M = 250.0  # routes that are together for less only cross
 STEP_M = 20.0  # between vertices of a street
 SAMPLE_M = 5.0
 FINE_M = 0.1
+STATION_M = 300.0  # stops of one name that are closer belong to the same station
 ALONG = math.cos(math.radians(30))  # ways at a larger angle to a street only cross it
 GROUPS = {"metro": ["subway", "light_rail", "monorail", "funicular"], "train": ["train"], "tram": ["tram"],
           "ferry": ["ferry"], "bus": ["bus", "trolleybus"]}  # each group has its own slots
@@ -36,12 +38,13 @@ def tags_of(element):
 
 
 def read(path):
-    """Returns the ways, as lists of positions with their tags, and the ways of each route. Both directions of a line
-    are one route."""
-    nodes, ways, routes = {}, {}, collections.defaultdict(set)
+    """Returns the ways, as lists of positions with their tags, the ways of each route, and the stops of each group, as
+    positions with their names. Both directions of a line are one route."""
+    nodes, names, ways, routes, stops = {}, {}, {}, collections.defaultdict(set), collections.defaultdict(set)
     for element in xml.parse(path).getroot():
         if element.tag == "node" and element.get("lon"):
             nodes[element.get("id")] = (float(element.get("lon")), float(element.get("lat")))
+            names[element.get("id")] = tags_of(element).get("name")
         elif element.tag == "way":
             line = [nodes[nd.get("ref")] for nd in element.findall("nd") if nd.get("ref") in nodes]
             if len(line) > 1:
@@ -54,9 +57,11 @@ def read(path):
             route = Route(tags["route"], tags.get("colour", "").lower(), (tags.get("ref") or tags.get("name", "")).strip("<>"),
                           tags.get("network", ""), "construction" if works else "")
             for member in element.findall("member"):
+                if member.get("type") == "node" and names.get(member.get("ref")) and not works:
+                    stops[GROUP_OF[route.mode]].add((names[member.get("ref")], nodes[member.get("ref")]))
                 if member.get("type") == "way" and not re.match("platform|stop", member.get("role", "")):
                     routes[route].add(member.get("ref"))
-    return ways, routes
+    return ways, routes, stops
 
 
 def natural(text):
@@ -260,7 +265,22 @@ def simplified(points):
     return simplified(points[:middle + 1])[:-1] + simplified(points[middle:])
 
 
-def features(ways, routes):
+def stations(stops, streets):
+    """Yields the name and the position of each station, for stops in metres."""
+    found = []  # name, positions
+    for name, at in sorted(stops):
+        near = [its for its_name, its in found if its_name == name and math.dist(its[0], at) < STATION_M]
+        if near:
+            near[0].append(at)
+        else:
+            found.append((name, [at]))
+    for name, its in found:
+        middle = tuple(sum(at[i] for at in its) / len(its) for i in (0, 1))
+        nearest = min(streets.at, key=lambda at: math.dist(at, middle), default=middle)
+        yield name, nearest if math.dist(nearest, middle) < STATION_M / 2 else middle
+
+
+def features(ways, routes, stops):
     if not ways:
         return
     latitude = sum(line[0][1] for line, _ in ways.values()) / len(ways)
@@ -283,8 +303,14 @@ def features(ways, routes):
             for i, route in enumerate(sorted(here, key=order_of)):
                 properties = {key: value for key, value in route._asdict().items() if value}
                 properties.update(slot=i - (len(here) - 1) / 2, routes=len(here), tunnel=in_tunnel)
+                if i == 0:
+                    properties["refs"] = "  ".join(dict.fromkeys(it.ref for it in sorted(here, key=order_of) if it.ref))
                 yield {"type": "Feature", "properties": properties,
                        "geometry": {"type": "LineString", "coordinates": coordinates}}
+        here = [(name, (x * east_m, y * north_m)) for name, (x, y) in stops.get(group, ())]
+        for name, (x, y) in stations(here, streets):
+            yield {"type": "Feature", "properties": {"station": name, "group": group},
+                   "geometry": {"type": "Point", "coordinates": [round(x / east_m, 7), round(y / north_m, 7)]}}
 
 
 def main():
@@ -292,12 +318,12 @@ def main():
         sys.exit(__doc__)
     path = sys.argv[1]
     try:
-        ways, routes = read(path)
+        ways, routes, stops = read(path)
     except OSError as error:
         sys.exit(f"{path}: cannot be read: {error.strerror}; check the path and its permissions")
     except (xml.ParseError, TypeError, ValueError) as error:
         sys.exit(f"{path}: not OpenStreetMap XML: {error}; make it with osmium tags-filter ... -f osm")
-    json.dump({"type": "FeatureCollection", "features": list(features(ways, routes))}, sys.stdout,
+    json.dump({"type": "FeatureCollection", "features": list(features(ways, routes, stops))}, sys.stdout,
               ensure_ascii=False, separators=(",", ":"))
 
 

@@ -7,18 +7,18 @@
 
 static camber_status add_shipped(camber_font_index *index) {
     const struct {
-        const char *style;
+        const char *name, *style;
         const unsigned char *bytes;
         unsigned long size_bytes;
         camber_font_style is;
     } fonts[] = {
-        {"Regular", camber_font_regular, camber_font_regular_size, {400.0f, 100.0f, false}},
-        {"Bold", camber_font_bold, camber_font_bold_size, {700.0f, 100.0f, false}},
-        {"Italic", camber_font_italic, camber_font_italic_size, {400.0f, 100.0f, true}},
+        {"Noto Sans", "Regular", camber_font_regular, camber_font_regular_size, {400.0f, 100.0f, false}},
+        {"Noto Sans Bold", "Bold", camber_font_bold, camber_font_bold_size, {700.0f, 100.0f, false}},
+        {"Noto Sans Italic", "Italic", camber_font_italic, camber_font_italic_size, {400.0f, 100.0f, true}},
     };
     for (size_t i = 0; i < sizeof fonts / sizeof *fonts; i++) {
         camber_font_entry *entry = camber_font_index_add(index, CAMBER_FONT_SHIPPED, "the Noto Sans that camber ships");
-        if (!entry)
+        if (!entry || !(entry->name = camber_copy_string(index->context, fonts[i].name)))
             return CAMBER_ERROR_MEMORY;
         entry->bytes = fonts[i].bytes;
         entry->size_bytes = fonts[i].size_bytes;

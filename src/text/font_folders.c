@@ -27,11 +27,12 @@ static const char *get_name(hb_face_t *face, hb_ot_name_id_t id, char name[NAME_
     return name;
 }
 
-static void describe(camber_font_entry *entry, hb_face_t *face) {
+static camber_status describe(camber_context *context, camber_font_entry *entry, hb_face_t *face) {
     char family[NAME_SIZE], style[NAME_SIZE], full[NAME_SIZE];
     camber_font_entry_name(entry, get_name(face, HB_OT_NAME_ID_TYPOGRAPHIC_FAMILY, family),
                            get_name(face, HB_OT_NAME_ID_TYPOGRAPHIC_SUBFAMILY, style),
                            get_name(face, HB_OT_NAME_ID_FULL_NAME, full));
+    entry->name = camber_copy_string(context, full);
     camber_font_entry_name(entry, get_name(face, HB_OT_NAME_ID_FONT_FAMILY, family),
                            get_name(face, HB_OT_NAME_ID_FONT_SUBFAMILY, style),
                            get_name(face, HB_OT_NAME_ID_POSTSCRIPT_NAME, full));
@@ -41,6 +42,7 @@ static void describe(camber_font_entry *entry, hb_face_t *face) {
     entry->style.is_italic = hb_style_get_value(font, HB_STYLE_TAG_ITALIC) > 0.0f ||
                              hb_style_get_value(font, HB_STYLE_TAG_SLANT_ANGLE) != 0.0f;
     hb_font_destroy(font);
+    return entry->name ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static camber_status add_file(camber_font_index *index, const char *path) {
@@ -62,7 +64,7 @@ static camber_status add_file(camber_font_index *index, const char *path) {
             has_any = true;
             if (entry) {
                 entry->index = i;
-                describe(entry, face);
+                status = describe(index->context, entry, face);
             }
         }
         hb_face_destroy(face);

@@ -35,6 +35,7 @@ void camber_font_index_free(camber_font_index *index) {
     for (size_t i = 0; i < index->count; i++) {
         camber_face_close(index->context, index->entries[i].face);
         camber_free(index->context, index->entries[i].path);
+        camber_free(index->context, index->entries[i].name);
     }
     camber_free(index->context, index->entries);
     if (index->config)

@@ -18,8 +18,9 @@ typedef enum camber_font_origin {
 
 typedef struct camber_font_entry {
     camber_font_origin origin;
-    char *path;                                                           /* a shipped font has its name here */
-    uint32_t index;                                                       /* as camber_face_open takes it */
+    char *path;     /* a shipped font has its name here */
+    char *name;     /* NULL: a font of the system, whose pattern has it */
+    uint32_t index; /* as camber_face_open takes it */
     uint64_t whole_keys[CAMBER_FONT_KEYS], family_keys[CAMBER_FONT_KEYS]; /* font_name.h */
     size_t whole_count, family_count;
     camber_font_style style;
@@ -59,6 +60,8 @@ size_t camber_font_index_find(const camber_font_index *index, const char *name);
 /* Returns the entry of a family with the nearest style. SIZE_MAX: there is none. */
 size_t camber_font_index_find_family(const camber_font_index *index, uint64_t family_key,
                                      const camber_font_style *style);
+/* Returns the full name of the font of the system that has this pattern. NULL: it has none. */
+const char *camber_font_pattern_name(const FcPattern *pattern);
 /* Opens the font of the entry with this number. Sets *face to NULL if it is broken. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_font_index_open(camber_font_index *index, size_t number, camber_face **face);
 

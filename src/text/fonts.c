@@ -153,6 +153,23 @@ static camber_status fill_index(camber_fonts *fonts) {
     return fonts->is_filled ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
+camber_status camber_fonts_list(camber_fonts *fonts, size_t n, camber_font_info *info) {
+    const camber_status status = fill_index(fonts);
+    if (status)
+        return status;
+    *info = (camber_font_info){0};
+    if (n >= fonts->index.count)
+        return CAMBER_OK;
+    const camber_font_entry *entry = &fonts->index.entries[n];
+    const char *name = entry->name ? entry->name : camber_font_pattern_name(entry->pattern);
+    *info = (camber_font_info){.name = name && *name ? name : entry->path,
+                               .path = entry->origin == CAMBER_FONT_SHIPPED ? NULL : entry->path,
+                               .weight = entry->style.weight,
+                               .width = entry->style.width,
+                               .italic = entry->style.is_italic};
+    return CAMBER_OK;
+}
+
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code) {
     return source->face ? camber_face_has(source->face, code) : camber_glyph_ranges_has(source->ranges, code);
 }
@@ -378,19 +395,30 @@ static bool is_pictograph(uint32_t code) {
     return (code >= 0x1f000 && code <= 0x1faff) || (code >= 0x2600 && code <= 0x27bf);
 }
 
-/* Finds the source for a character that no font has: it is drawn as the box of the stack's first font. */
-static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
-    const bool is_left_out = is_pictograph(code);
+/* Says once for each script which character of it has no font, and which package has one. */
+static void tell_missing_character(camber_fonts *fonts, uint32_t code) {
     const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
+    const bool is_cjk = camber_is_ideographic(code) || script == HB_SCRIPT_HANGUL;
     char tag[5] = {0};
     hb_tag_to_string(hb_script_to_iso15924_tag(script), tag);
-    if (is_news(fonts, is_left_out ? 1 : camber_mix(2, (uint64_t)script)))
+    if (is_pictograph(code)) {
+        if (is_news(fonts, 1))
+            camber_log(fonts->context, CAMBER_LOG_WARNING,
+                       "no font has an outline of the pictograph U+%04X: such characters are left out (Debian has "
+                       "outlines in fonts-noto-core and fonts-symbola)",
+                       (unsigned)code);
+    } else if (is_news(fonts, is_cjk ? 3 : camber_mix(2, (uint64_t)script))) {
+        const char *name = is_cjk ? "Chinese, Japanese and Korean" : camber_get_script_name(script, NULL);
         camber_log(fonts->context, CAMBER_LOG_WARNING,
-                   is_left_out ? "no font has an outline of the pictograph U+%04X: such characters are left out"
-                               : "no font has U+%04X (script %s): its characters are drawn as boxes (Debian: "
-                                 "fonts-noto-core, fonts-noto-cjk)",
-                   (unsigned)code, tag);
-    if (is_left_out)
+                   "no font has U+%04X (script: %s): such characters are drawn as boxes (Debian has them in %s)",
+                   (unsigned)code, name ? name : tag, is_cjk ? "fonts-noto-cjk" : "fonts-noto-core");
+    }
+}
+
+/* Finds the source for a character that no font has: it is drawn as the box of the stack's first font. */
+static camber_status find_box(camber_fonts *fonts, const camber_font_stack *stack, uint32_t code, uint32_t *source) {
+    tell_missing_character(fonts, code);
+    if (is_pictograph(code))
         return CAMBER_OK;
     if (!stack->named_count)
         return find_shipped(fonts, stack, source);
@@ -469,14 +497,26 @@ camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, cons
 
 /* ---- Outlines ---- */
 
-static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int exponent, camber_made_outline **made) {
+/* How far an outline's segments may be from its curves in a text of a given size, px. */
+static const float TOLERANCE_PX = 1.0f / 32.0f;
+/* Stem darkening. In a text of fewer px per em than this, strokes are widened: the smaller it is, the more. */
+static const float DARKENED_BELOW_PX = 20.0f;
+static const float DARKENING_PX = 0.2f; /* for a text of 0 px */
+/* Outlines are made in steps of weight, because texts in perspective have very many sizes. */
+static const float WEIGHT_STEP_EM = 1.0f / 1024.0f;
+static const float LARGEST_WEIGHT = 32.0f;
+
+static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int exponent, unsigned weight,
+                                  camber_made_outline **made) {
     const camber_font_glyph *of = &fonts->glyphs[glyph];
     const camber_glyph_source *source = &fonts->sources[of->source];
     camber_made_outline *node = camber_alloc_zero(fonts->context, 1, sizeof *node);
     if (!node)
         return CAMBER_ERROR_MEMORY;
     node->exponent = exponent;
-    camber_outline_maker maker = {.context = fonts->context, .tolerance_em = ldexpf(1.0f, exponent)};
+    node->weight = weight;
+    camber_outline_maker maker = {
+        .context = fonts->context, .tolerance_em = ldexpf(1.0f, exponent), .wider_em = (float)weight * WEIGHT_STEP_EM};
     if (source->face)
         camber_outline_draw_glyph(&maker, source->face, of->number);
     else
@@ -490,27 +530,42 @@ static camber_status make_outline(camber_fonts *fonts, uint32_t glyph, int expon
     return CAMBER_OK;
 }
 
-camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
-                                       camber_outline *outline) {
+static camber_status find_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em, unsigned weight,
+                                  camber_outline *outline) {
     int exponent;
     assert(glyph < fonts->glyph_count);
     /* One outline serves all tolerances between two powers of 2. Outlines from ranges have no curves, so one serves
      * all. */
     frexpf(tolerance_em > 0.0f ? fminf(fmaxf(tolerance_em, 0x1p-20f), 1.0f) : 1.0f / 256.0f, &exponent);
     exponent--;
-    if (fonts->sources[fonts->glyphs[glyph].source].ranges)
+    if (fonts->sources[fonts->glyphs[glyph].source].ranges) {
         exponent = 0;
+        weight = 0;
+    }
     for (const camber_made_outline *made = fonts->glyphs[glyph].outlines; made; made = made->next)
-        if (made->exponent == exponent) {
+        if (made->exponent == exponent && made->weight == weight) {
             *outline = made->outline;
             return CAMBER_OK;
         }
     camber_made_outline *made = NULL;
-    const camber_status status = make_outline(fonts, glyph, exponent, &made);
+    const camber_status status = make_outline(fonts, glyph, exponent, weight, &made);
     if (status)
         return status;
     made->next = fonts->glyphs[glyph].outlines;
     fonts->glyphs[glyph].outlines = made;
     *outline = made->outline;
     return CAMBER_OK;
+}
+
+camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
+                                       camber_outline *outline) {
+    return find_outline(fonts, glyph, tolerance_em, 0, outline);
+}
+
+camber_status camber_fonts_get_sized_outline(camber_fonts *fonts, uint32_t glyph, float size_px,
+                                             camber_outline *outline) {
+    assert(size_px > 0.0f);
+    const float wider_px = DARKENING_PX * fmaxf(1.0f - size_px / DARKENED_BELOW_PX, 0.0f);
+    const float weight = fminf(wider_px / size_px / WEIGHT_STEP_EM + 0.5f, LARGEST_WEIGHT);
+    return find_outline(fonts, glyph, TOLERANCE_PX / size_px, (unsigned)weight, outline);
 }

@@ -39,11 +39,12 @@ typedef struct camber_font_stack {
 
 #define CAMBER_NO_SOURCE UINT32_MAX
 
-/* An outline for a tolerance. */
+/* An outline for a tolerance and a weight. */
 typedef struct camber_made_outline camber_made_outline;
 struct camber_made_outline {
     camber_made_outline *next;
-    int exponent; /* of the tolerance */
+    int exponent;    /* of the tolerance */
+    unsigned weight; /* how much wider its strokes are */
     camber_outline outline;
     void *block;
 };

@@ -253,6 +253,7 @@ camber_status camber_shaping_lay_out(camber_fonts *fonts, const camber_text_desc
     size_t item = 0;
     l.ascender_em = find_ascender(fonts, desc);
     text->line_height_em = line_height;
+    text->letter_spacing_em = l.spacing;
     text->lines = camber_alloc(fonts->context, shaping->line_count, sizeof *text->lines);
     text->glyphs = text->lines ? camber_alloc(fonts->context, shaping->glyph_count, sizeof *text->glyphs) : NULL;
     if (!text->glyphs)

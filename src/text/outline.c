@@ -83,6 +83,31 @@ static void orient(camber_outline_maker *maker) {
         reverse(maker->points + 2 * (size_t)maker->offsets[i], maker->offsets[i + 1] - maker->offsets[i]);
 }
 
+/* Moves each edge of a ring outwards by a distance. A corner moves by at most 2.9 times the distance.
+ *
+ *           \\    old corner           Clockwise rings grow, and holes, which are counter-clockwise, shrink.
+ *     -------+\\
+ *     ---------+   new corner
+ */
+static void move_edges(float *ring, size_t count, float distance) {
+    const float first[2] = {ring[0], ring[1]};
+    float before[2] = {ring[2 * count - 2], ring[2 * count - 1]};
+    for (size_t i = 0; i < count; i++) {
+        float *at = ring + 2 * i;
+        const float *next = i + 1 < count ? at + 2 : first;
+        const float in[2] = {at[0] - before[0], at[1] - before[1]}, out[2] = {next[0] - at[0], next[1] - at[1]};
+        const float in_length = hypotf(in[0], in[1]), out_length = hypotf(out[0], out[1]);
+        before[0] = at[0];
+        before[1] = at[1];
+        if (!(in_length > 0.0f && out_length > 0.0f))
+            continue;
+        const float ux = in[0] / in_length, uy = in[1] / in_length, vx = out[0] / out_length, vy = out[1] / out_length;
+        const float scale = distance / fmaxf(1.0f + ux * vx + uy * vy, 0.25f);
+        at[0] += scale * (uy + vy);
+        at[1] -= scale * (ux + vx);
+    }
+}
+
 static void copy(camber_outline_maker *maker, camber_outline *outline, unsigned char *block) {
     const size_t point_bytes = maker->point_count * 2 * sizeof *maker->points;
     memcpy(block, maker->points, point_bytes);
@@ -109,6 +134,9 @@ camber_status camber_outline_finish(camber_outline_maker *maker, camber_outline 
     if (!maker->status && maker->ring_count) {
         maker->offsets[maker->ring_count] = (uint32_t)maker->point_count;
         orient(maker);
+        for (size_t i = 0; i < maker->ring_count && maker->wider_em > 0.0f; i++)
+            move_edges(maker->points + 2 * (size_t)maker->offsets[i], maker->offsets[i + 1] - maker->offsets[i],
+                       0.5f * maker->wider_em);
         bytes = camber_alloc(context, 1,
                              maker->point_count * 2 * sizeof *maker->points +
                                  (maker->ring_count + 1) * sizeof *maker->offsets);

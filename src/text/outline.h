@@ -15,6 +15,7 @@ typedef struct camber_outline_maker {
     size_t ring_count, offset_capacity;
     float scale;        /* from the font's units to ems */
     float tolerance_em; /* for flattening curves */
+    float wider_em;     /* how much wider strokes become: half of it on either side */
     camber_status status;
 } camber_outline_maker;
 
@@ -22,7 +23,8 @@ void camber_outline_begin_ring(camber_outline_maker *maker);
 void camber_outline_add_point(camber_outline_maker *maker, float x, float y);
 /* Drops the ring if it has no area. */
 void camber_outline_end_ring(camber_outline_maker *maker);
-/* Orients the rings, and copies them into one block, which camber_free frees. An outline without rings has no block. */
+/* Orients the rings, moves their edges apart by maker->wider_em, and copies them into one block, which camber_free
+ * frees. An outline without rings has no block. */
 camber_status camber_outline_finish(camber_outline_maker *maker, camber_outline *outline, void **block);
 
 /* Draws the glyph that has this number in a font. */

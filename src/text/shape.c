@@ -4,6 +4,10 @@
 
 #include <fribidi.h>
 
+/* How far the top of the line that glyphs of ranges have is above the top of the square in which they stand upright, as
+ * in MapLibre. */
+static const float UPRIGHT_TOP_EM = 7.0f / 24.0f;
+
 static camber_item_glyph *add_glyph(camber_fonts *fonts) {
     camber_shaping *shaping = &fonts->shaping;
     if (!camber_grow(fonts->context, &shaping->glyphs, &shaping->glyph_capacity, shaping->glyph_count + 1,
@@ -80,9 +84,9 @@ static camber_status add_range_glyph(camber_fonts *fonts, const camber_text_item
     glyph->advance = camber_glyph_ranges_advance_em(source->ranges, chosen);
     glyph->is_turned = item->is_upright && chosen == code && camber_turns_without_form(code);
     if (item->is_upright && !glyph->is_turned) {
-        /* The glyph is in the middle of a square with sides of one em. */
+        /* The glyph is in a square with sides of one em. */
         glyph->x = -0.5f * glyph->advance;
-        glyph->y = 0.5f + source->ranges->ascender_em + CAMBER_LINE_TOP_EM;
+        glyph->y = source->ranges->ascender_em - UPRIGHT_TOP_EM;
         glyph->advance = 1.0f;
     }
     return CAMBER_OK;

@@ -40,6 +40,11 @@ static void describe(camber_font_entry *entry, FcPattern *pattern) {
         camber_font_entry_name(entry, NULL, NULL, full);
 }
 
+const char *camber_font_pattern_name(const FcPattern *pattern) {
+    const char *full = get_string(pattern, FC_FULLNAME, 0);
+    return full ? full : get_string(pattern, FC_FAMILY, 0);
+}
+
 camber_status camber_font_index_add_system(camber_font_index *index) {
     index->config = FcConfigReference(NULL);
     FcFontSet *fonts = index->config ? FcConfigGetFonts(index->config, FcSetSystem) : NULL;

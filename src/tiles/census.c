@@ -390,6 +390,54 @@ camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_
     return status;
 }
 
+static int compare_metatiles(const void *left, const void *right) {
+    const camber_metatile *a = left, *b = right;
+    return a->points < b->points ? -1 : a->points > b->points;
+}
+
+camber_status camber_census_touch(camber_census *census, const camber_touched_tiles *touched, size_t count) {
+    const int zoom = camber_metatile_level(census->zoom, census->side);
+    size_t added = 0, at = census->metatile_count;
+    camber_metatile *more = camber_alloc(census->context, count, sizeof *more);
+    if (!more)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        const camber_metatile *there = camber_census_find(census, touched[i].column, touched[i].row);
+        if (there)
+            census->metatiles[there - census->metatiles].tiles |= touched[i].tiles;
+        else /* points: its number along the Hilbert curve, until it is sorted */
+            more[added++] = (camber_metatile){.column = touched[i].column,
+                                              .row = touched[i].row,
+                                              .tiles = touched[i].tiles,
+                                              .points = camber_pmtiles_number(zoom, touched[i].column, touched[i].row)};
+    }
+    if (added)
+        qsort(more, added, sizeof *more, compare_metatiles);
+    camber_metatile *all = camber_alloc(census->context, at + added, sizeof *all);
+    if (!all) {
+        camber_free(census->context, more);
+        return CAMBER_ERROR_MEMORY;
+    }
+    census->metatile_count = at + added;
+    while (at + added > 0) {
+        const camber_metatile *last = at ? census->metatiles + at - 1 : NULL;
+        const bool own =
+            last && (!added || camber_pmtiles_number(zoom, last->column, last->row) > more[added - 1].points);
+        camber_metatile *to = all + (at + added - 1);
+        *to = own ? *last : more[added - 1];
+        if (own) {
+            at--;
+        } else {
+            to->points = 0;
+            added--;
+        }
+    }
+    camber_free(census->context, more);
+    camber_free(census->context, census->metatiles);
+    census->metatiles = all;
+    return CAMBER_OK;
+}
+
 void camber_census_free(camber_census *census) {
     if (!census->context)
         return;

@@ -37,6 +37,13 @@ static inline int camber_metatile_level(int zoom, uint32_t side) {
 camber_status camber_census_make(const camber_zoom_plan *plan, int zoom, uint32_t side, camber_workers *workers,
                                  camber_census *census);
 void camber_census_free(camber_census *census);
+/* Tiles of a metatile that something other than a line touches. */
+typedef struct camber_touched_tiles {
+    uint32_t column, row; /* in metatiles */
+    uint64_t tiles;
+} camber_touched_tiles;
+/* Marks more tiles as touched. The metatiles are all different. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_census_touch(camber_census *census, const camber_touched_tiles *touched, size_t count);
 /* Returns NULL if no line touches the metatile. */
 const camber_metatile *camber_census_find(const camber_census *census, uint32_t column, uint32_t row);
 

@@ -11,7 +11,6 @@
 #include <math.h>
 
 enum {
-    PICTURE_PX = 2048,
     LEAST_TILE_PX = 64,
     /* At higher zooms the census would grow without limit, because lines pass through more and more tiles. Tiles on
      * demand use a census in tiles of this zoom instead; each of these contains few lines. */
@@ -50,10 +49,10 @@ static camber_status check_desc(camber_tiles_engine *engine, const camber_tiles_
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT, "tiles: a tile size of %u; choose 256 or 512",
                            own->tile_size);
     const double tile_px = camber_engine_tile_px(own);
-    if (!(tile_px >= LEAST_TILE_PX && tile_px <= PICTURE_PX))
+    if (!(tile_px >= LEAST_TILE_PX && tile_px <= CAMBER_PICTURE_PX))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: a ratio of %g makes %g px of a tile of %u; choose a ratio that makes %d to %d",
-                           own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, PICTURE_PX);
+                           own->ratio, tile_px, own->tile_size, LEAST_TILE_PX, CAMBER_PICTURE_PX);
     if (!(own->simplify_px >= 0.0 && isfinite(own->simplify_px)))
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: a simplification of %g px; choose 0 or a distance in pixels", own->simplify_px);
@@ -90,6 +89,8 @@ void camber_engine_forget_zoom(camber_tiles_engine *engine, int zoom) {
     if (zoom < 0 || zoom > CAMBER_LARGEST_TILE_ZOOM)
         return;
     camber_census_free(&engine->zooms[zoom].census);
+    camber_zoom_labels_destroy(engine->zooms[zoom].labels);
+    engine->zooms[zoom].labels = NULL;
     if (engine->zooms[zoom].mesh)
         camber_mesh_plan_destroy(engine->zooms[zoom].mesh);
     else
@@ -104,6 +105,7 @@ void camber_tiles_engine_destroy(camber_tiles_engine *engine) {
     camber_mesh_destroy(engine->mesh);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
         camber_engine_forget_zoom(engine, zoom);
+    camber_label_things_free(&engine->things);
     camber_workers_free(&engine->workers);
     camber_free(engine->context, engine);
 }
@@ -114,14 +116,6 @@ size_t camber_tiles_engine_get_picture_bytes(const camber_tiles_engine *engine) 
 }
 
 /* ---- Zooms ---- */
-
-uint32_t camber_engine_side(const camber_tiles_engine *engine, int zoom) {
-    const uint32_t most = engine->desc.on_demand_side ? engine->desc.on_demand_side : CAMBER_METATILE_SIDE_MOST;
-    uint32_t side = 1;
-    for (int i = 0; i < zoom && side < most && 2 * side * engine->tile_px <= PICTURE_PX; i++)
-        side *= 2;
-    return side;
-}
 
 /* Returns the zoom in whose tiles the census of a zoom is taken. */
 static int census_zoom(const camber_tiles_engine *engine, int zoom) {
@@ -246,9 +240,14 @@ static camber_status tessellate(camber_tiles_engine *engine, const camber_metati
     const camber_engine_zoom *zoom = engine->zooms + picture->zoom;
     const camber_view window = window_of(zoom->plan, picture);
     const double start_ms = camber_now_ms();
-    const camber_status status =
-        camber_scene_create_window(zoom->plan, &window, metatile ? zoom->census.polylines + metatile->first : none,
-                                   metatile ? metatile->end - metatile->first : 0, scene);
+    camber_window_labels labels = {
+        .square =
+            camber_engine_square(engine, picture->zoom, picture->column / picture->side, picture->row / picture->side)};
+    camber_status status = camber_engine_get_labels(engine, picture->zoom, &labels.labels);
+    if (status == CAMBER_OK)
+        status = camber_scene_create_window(zoom->plan, &window, &labels,
+                                            metatile ? zoom->census.polylines + metatile->first : none,
+                                            metatile ? metatile->end - metatile->first : 0, scene);
     engine->make_ms += camber_now_ms() - start_ms;
     return status == CAMBER_OK ? camber_scene_tessellate(*scene, engine->mesh, CAMBER_METHOD_STRIP) : status;
 }
@@ -309,7 +308,12 @@ static camber_status find(camber_tiles_engine *engine, int zoom, uint32_t column
         return status;
     const uint32_t side = camber_engine_side(engine, zoom);
     *metatile = find_metatile(engine, zoom, column, row);
+    uint64_t labelled = 0;
+    const camber_status found = camber_engine_find_label_tiles(engine, zoom, column / side, row / side, &labelled);
+    if (found != CAMBER_OK)
+        return found;
     *picture = camber_engine_describe(engine, zoom, column / side, row / side, *metatile);
+    picture->tiles |= labelled;
     return CAMBER_OK;
 }
 

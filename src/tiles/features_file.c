@@ -335,11 +335,14 @@ static bool take_polyline(loading *l, size_t polyline, uint64_t begin) {
     return true;
 }
 
-/* Whether the line or area that starts with this polyline is wanted. The region contains all boxes; checking it first
+/* Whether the line or area that starts with this polyline is wanted. What has a label is always wanted, because which
+ * labels are shown may depend on labels outside the region. The region contains all boxes; checking it first
  * rejects most lines that are in none of them. */
 static bool is_wanted(const loading *l, size_t polyline) {
     const camber_features *f = l->features;
     size_t next;
+    if (camber_geometry_is_label(camber_features_kind(f, polyline)))
+        return true;
     if (f->has_region && !camber_features_touch(f, &f->region, polyline, &next))
         return false;
     for (size_t i = 0; i < l->box_count && l->box_count > 1; i++)

@@ -86,9 +86,15 @@ static uint64_t hash_style(const camber_features *features) {
     return hash;
 }
 
+/* Pictures without labels have the hash that they had before there were any. */
+static uint64_t hash_labels(const camber_features *features, uint64_t hash) {
+    return features->fonts ? hash_text(hash, "labels") : hash;
+}
+
 uint64_t camber_features_get_hash(const camber_features *features) {
     camber_box box;
-    return camber_mix(hash_text(camber_features_hash(features, &box), camber_version()), hash_style(features));
+    return hash_labels(features, camber_mix(hash_text(camber_features_hash(features, &box), camber_version()),
+                                            hash_style(features)));
 }
 
 static uint64_t hash_options(const camber_tiles_engine *engine, const camber_tiles_draw_desc *desc) {
@@ -101,7 +107,7 @@ static uint64_t hash_options(const camber_tiles_engine *engine, const camber_til
         desc->encoding == CAMBER_ENCODING_WEBP ? (double)desc->quality : 0.0,
         (double)desc->keep_empty,
         engine->desc.meshes ? -1.0 : (double)camber_renderer_get_rasterizer(engine->desc.renderer)};
-    return hash_more(0, numbers, sizeof numbers);
+    return hash_labels(engine->features, hash_more(0, numbers, sizeof numbers));
 }
 
 static uint64_t hash_area(const camber_tiles_draw_desc *desc, const camber_tiles_area *area) {

@@ -6,6 +6,8 @@
  *
  *     census -> schedule -> [resumed?] -> draw --> encode (threads) --> writer --> archive
  *                                          ^------- the next picture ----' */
+#define _XOPEN_SOURCE 700
+
 #include "archive/archive.h"
 #include "archive/pmtiles.h"
 #include "features/features.h"
@@ -14,11 +16,13 @@
 #include "style/style.h"
 #include "tiles/encoding.h"
 #include "tiles/features_file.h"
+#include "tiles/label_record.h"
 #include "tiles/schedule_file.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 typedef struct pyramid {
     camber_context *context;
@@ -26,7 +30,8 @@ typedef struct pyramid {
     const camber_tiles_draw_desc *desc;
     camber_tiles_area area;
     camber_schedule schedule;
-    camber_archive *renewed; /* the archive whose tiles are replaced. NULL: none */
+    camber_archive *renewed;    /* the archive whose tiles are replaced. NULL: none */
+    camber_label_record labels; /* of the archive, if they are recorded; otherwise context is NULL */
     camber_archive_writer *writer;
     camber_encode_queue *queue;
     camber_tiles_stats stats;
@@ -468,6 +473,8 @@ static camber_status draw_archive(pyramid *p) {
     const double drawn_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_archive_writer_finish(p->writer);
+    if (status == CAMBER_OK && p->labels.context)
+        status = camber_label_record_write(&p->labels, p->desc->label_record);
     if (status == CAMBER_OK)
         p->stats.emptied = camber_archive_writer_get_removed(p->writer);
     p->stats.write_ms += camber_now_ms() - drawn_ms;
@@ -485,6 +492,10 @@ static camber_status check_desc(const pyramid *p) {
         return camber_fail(
             p->context, CAMBER_ERROR_ARGUMENT,
             "tiles: renewing cannot be combined with shards, resuming, a dry run or a schedule; leave those out");
+    if (desc->label_record && (desc->shards || desc->schedule))
+        return camber_fail(
+            p->context, CAMBER_ERROR_ARGUMENT,
+            "tiles: labels cannot be recorded by a part of a run; leave out the shards and the schedule");
     if (p->engine->desc.on_demand_side)
         return camber_fail(p->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the engine draws tiles on demand; make one without on_demand_side");
@@ -555,6 +566,49 @@ static camber_status keep_list(pyramid *p, camber_box data) {
     return CAMBER_OK;
 }
 
+/* Adds to the list the tiles whose labels differ from those that an earlier run has recorded. */
+static camber_status add_relabelled(pyramid *p) {
+    const camber_archive *there = p->renewed;
+    const camber_tiles_draw_desc *desc = p->desc;
+    const size_t listed = p->area.tile_count;
+    camber_label_record before = {0};
+    uint64_t added = 0;
+    camber_status status = camber_label_record_read(p->context, desc->label_record, &before);
+    if (status == CAMBER_OK)
+        status = camber_label_record_add_changed(&before, &p->labels, &p->area, &added);
+    camber_label_record_free(&before);
+    if (status != CAMBER_OK)
+        return status;
+    (void)camber_tiles_area_keep(&p->area, there->min_zoom, there->max_zoom,
+                                 there->has_bounds && !desc->has_bbox && !desc->region ? there->bounds : NULL);
+    p->stats.relabelled = p->area.tile_count > listed ? p->area.tile_count - listed : 0;
+    p->stats.done = p->area.tile_count == 0;
+    return CAMBER_OK;
+}
+
+/* Records the labels of the archive, which a run that renews tiles compares with those before it. */
+static camber_status record_labels(pyramid *p) {
+    const camber_archive *there = p->renewed;
+    const bool lists = there && p->desc->tile_count, exists = access(p->desc->label_record, F_OK) == 0;
+    const double start_ms = camber_now_ms();
+    camber_status status = camber_label_record_make(p->engine, there ? there->min_zoom : p->area.min_zoom,
+                                                    there ? there->max_zoom : p->area.max_zoom, &p->labels);
+    if (status == CAMBER_OK && lists && exists)
+        status = add_relabelled(p);
+    p->stats.census_ms += camber_now_ms() - start_ms;
+    return status;
+}
+
+/* Labels that have moved may be in tiles that nobody has listed. */
+static void warn_of_labels(const pyramid *p) {
+    if (p->renewed && p->desc->tile_count && !p->desc->label_record && p->engine->features->fonts &&
+        camber_features_label_kinds(p->engine->features))
+        camber_log(p->context, CAMBER_LOG_WARNING,
+                   "%s: labels that have moved may be in tiles that are not listed; give --label-record FILE when an "
+                   "archive is drawn and when it is renewed, and such tiles are renewed, too",
+                   p->desc->output);
+}
+
 static camber_status find_drawn(const pyramid *p, camber_box *data) {
     const bool asked = p->desc->min_zoom >= 0;
     return camber_plan_drawn_box(p->engine->features, asked ? p->desc->min_zoom : 0,
@@ -577,6 +631,9 @@ static camber_status make_schedule(pyramid *p) {
         status = open_renewed(p);
     if (status == CAMBER_OK && p->desc->renew && p->desc->tile_count)
         status = keep_list(p, data);
+    if (status == CAMBER_OK && p->desc->label_record && !p->desc->dry_run)
+        status = record_labels(p);
+    warn_of_labels(p);
     if (status != CAMBER_OK || p->stats.done)
         return status;
     status = camber_schedule_make(p->engine, &p->area, p->desc->keep_empty || p->desc->renew, &p->schedule);
@@ -639,6 +696,7 @@ camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_
     camber_archive_writer_destroy(p.writer);
     camber_archive_close(p.renewed);
     camber_schedule_free(&p.schedule);
+    camber_label_record_free(&p.labels);
     camber_tiles_area_free(&p.area);
     camber_free(p.context, p.blank);
     for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)

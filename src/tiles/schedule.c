@@ -178,6 +178,8 @@ camber_status camber_schedule_make(camber_tiles_engine *engine, const camber_til
         camber_progress(engine->context, "finding where lines are",
                         (double)(zoom - area->min_zoom) / (area->max_zoom - area->min_zoom + 1));
         status = camber_engine_open_zoom(engine, zoom, &opened);
+        if (status == CAMBER_OK)
+            status = camber_engine_add_label_tiles(engine, zoom, area);
         if (status != CAMBER_OK)
             break;
         status = all ? add_all(schedule, &opened->census, area) : add_touched(schedule, &opened->census, area);

@@ -312,6 +312,8 @@ camber_status camber_tiles_schedule_read_for(camber_tiles_schedule *schedule, ca
 camber_status camber_tiles_schedule_load(const camber_tiles_schedule *schedule, camber_features *features,
                                          bool *loaded) {
     *loaded = schedule->features[0] && access(schedule->features, F_OK) == 0;
+    if (!*loaded && camber_features_label_kinds(features)) /* files cannot be read for labels alone */
+        features->has_region = false;
     return *loaded ? camber_features_load(features, schedule->boxes, schedule->box_count, schedule->input,
                                           schedule->features)
                    : CAMBER_OK;

@@ -1,7 +1,9 @@
 /* Compares with samples: lines with two sides and a gap, and lines that fade, are dashed, are drawn in part, change
- * their colour or show an image; and the areas that the same points enclose. Some are seen at an angle. */
+ * their colour or show an image; the areas that the same points enclose; and glyphs with halos, as labels draw them.
+ * Some are seen at an angle. */
 #include "validate/along_truth.h"
 #include "validate/checks.h"
+#include "validate/glyph_truth.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,6 +53,7 @@ static const struct {
     camber_paint paint;
     camber_pixel_bounds bounds;
     double pitch_deg;
+    bool glyphs; /* the sheet of glyphs instead of the lines; the paint is unused */
 } rows[] = {
     {"a gap", CAMBER_CAP_BUTT, {.width_px = 3, .gap_px = 4, WHITE}, {0.6, 0.002, 0.0005}},
     {"a blur", CAMBER_CAP_BUTT, {.width_px = 10, .blur_px = 3, WHITE}, {1.2, 0.001, 0.0005}},
@@ -77,7 +80,9 @@ static const struct {
      40},
     {"areas of images at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills + 2}, {0.7, 0.002, 0.0005}, 40},
     {"areas at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}, 40},
+    {"glyphs with halos", CAMBER_CAP_ROUND, {0}, {2.6, 0.037, 0.0005}, .glyphs = true},
 };
+_Static_assert((int)SIDE_PX == (int)CAMBER_SHEET_SIDE_PX, "all rows have pictures of one size");
 
 /* Red and alpha. */
 typedef struct channels {
@@ -141,8 +146,20 @@ typedef struct expected {
     float levels[2 * PIXELS];
 } expected;
 
+static bool sample_glyphs(float truth[2 * PIXELS]) {
+    camber_glyph_sheet *sheet = malloc(sizeof *sheet);
+    if (!sheet)
+        return false;
+    camber_glyph_sheet_make(sheet);
+    camber_glyph_sheet_sample(sheet, truth);
+    free(sheet);
+    return true;
+}
+
 static bool make_truth(size_t number, float truth[2 * PIXELS]) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
+    if (rows[number].glyphs)
+        return sample_glyphs(truth);
     const camber_paint *paint = &rows[number].paint;
     float *rgba = calloc(PIXELS, 4 * sizeof *rgba);
     if (rgba && paint->fill)
@@ -164,6 +181,44 @@ static bool make_truth(size_t number, float truth[2 * PIXELS]) {
     return made;
 }
 
+/* Draws glyphs as labels are drawn: strokes of the rings, and then their insides. The glyphs are red, the halos black,
+ * so that red is the share of the glyphs, and alpha that of both. */
+static camber_status draw_glyphs(camber_context *context, const camber_drawing_path *path, camber_method method,
+                                 channels *drawn) {
+    static const camber_fill red = {.color = {1, 0, 0, 1}};
+    camber_stroke strokes[CAMBER_SHEET_ROWS] = {{0}};
+    camber_paint halos[CAMBER_SHEET_ROWS] = {{0}}, glyphs[CAMBER_SHEET_ROWS] = {{0}};
+    camber_polylines *polylines = NULL;
+    camber_glyph_sheet *sheet = malloc(sizeof *sheet);
+    if (!sheet)
+        return CAMBER_ERROR_MEMORY;
+    camber_glyph_sheet_make(sheet);
+    for (size_t i = 0; i < CAMBER_SHEET_ROWS; i++) {
+        const float width_px = 2.0f * camber_glyph_sheet_halo_px(i);
+        strokes[i] = (camber_stroke){.width_px = width_px, .cap = CAMBER_CAP_ROUND};
+        halos[i] = (camber_paint){.width_px = width_px, .color = {0, 0, 0, 1}};
+        glyphs[i] = (camber_paint){.fill = &red};
+    }
+    const camber_polylines_desc desc = {.points = sheet->points,
+                                        .point_count = sheet->offsets[CAMBER_SHEET_RINGS],
+                                        .offsets = sheet->offsets,
+                                        .polyline_count = CAMBER_SHEET_RINGS,
+                                        .rows = sheet->rows};
+    const camber_tessellation_desc tessellation = {
+        .strokes = strokes, .stroke_count = CAMBER_SHEET_ROWS, .method = method};
+    const camber_pass passes[] = {{.mesh = path->mesh, .paints = halos, .paint_count = CAMBER_SHEET_ROWS},
+                                  {.mesh = path->mesh, .paints = glyphs, .paint_count = CAMBER_SHEET_ROWS}};
+    const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = passes, .pass_count = 2};
+    camber_status status = camber_polylines_create(context, &desc, &polylines);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate(path->mesh, polylines, &tessellation);
+    if (status == CAMBER_OK)
+        status = camber_renderer_render(path->renderer, &frame, take, drawn, NULL);
+    camber_polylines_destroy(polylines);
+    free(sheet);
+    return status;
+}
+
 static camber_status draw(camber_context *context, const camber_drawing_path *path, size_t number, camber_method method,
                           channels *drawn) {
     const camber_paint *paint = &rows[number].paint;
@@ -178,6 +233,8 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
     const camber_areas_desc areas = {
         .points = points, .point_count = offsets[RINGS], .offsets = offsets, .ring_count = RINGS};
     camber_polylines *polylines = NULL;
+    if (rows[number].glyphs)
+        return draw_glyphs(context, path, method, drawn);
     camber_status status = paint->fill ? camber_areas_create(context, &areas, &polylines)
                                        : camber_polylines_create(context, &desc, &polylines);
     if (status == CAMBER_OK)

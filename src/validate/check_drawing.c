@@ -61,6 +61,7 @@ static bool make_frame(const camber_subject *s, const camber_validation_desc *de
         d->passes[pass] = (camber_pass){.mesh = mesh, .paints = paints, .paint_count = s->stroke_count};
     }
     d->passes[1].overlap = CAMBER_OVERLAP_UNITE;
+    d->passes[1].upright = true; /* makes a difference with a pitch */
     d->passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
     d->passes[2].opacity = 0.7f;
     d->frame = (camber_frame){.width = s->width < side ? s->width : side,
@@ -394,7 +395,7 @@ camber_status camber_check_drawing(camber_validation *v, const camber_subject *s
                 status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
             if (status == CAMBER_OK && takes_strips)
                 status = check_slices(v, s, checked, drawer);
-            for (size_t n = 0; n < CAMBER_CHECKED_GROUPS && status == CAMBER_OK && v->desc->full; n++)
+            for (size_t n = 0; n < checked->group_count && status == CAMBER_OK && v->desc->full; n++)
                 status = check_lanes(v, s, checked, drawer->name, n);
         }
     return status;

@@ -198,7 +198,7 @@ static camber_status compare_parts(job *j, const camber_mesh_state *whole, cambe
     return status;
 }
 
-enum { AGAIN, IN_GROUPS, IN_PARTS = IN_GROUPS + CAMBER_CHECKED_GROUPS, WAYS };
+enum { AGAIN, IN_PARTS, IN_GROUPS };
 
 /* Makes the mesh again in one of the ways, and compares it with the first mesh. */
 static camber_status check_way(job *j, int way, const camber_mesh_state *first) {
@@ -209,7 +209,7 @@ static camber_status check_way(job *j, int way, const camber_mesh_state *first) 
         snprintf(what, sizeof what, "in work-groups of %u", j->checked->groups[way - IN_GROUPS].size);
     camber_check check = camber_check_start(j->checked->name, NULL, "%s: %s: the same bytes %s, on %s", j->s->name,
                                             camber_method_get_name(j->desc.method), what, j->checked->name);
-    camber_mesh *mesh = way == AGAIN || way == IN_PARTS ? j->checked->mesh : j->checked->groups[way - IN_GROUPS].mesh;
+    camber_mesh *mesh = way < IN_GROUPS ? j->checked->mesh : j->checked->groups[way - IN_GROUPS].mesh;
     const camber_status compared =
         way == IN_PARTS ? compare_parts(j, first, &check) : compare_mesh(j, mesh, first, false, &check);
     const camber_status status = compared;
@@ -223,7 +223,7 @@ static camber_status check_ways(job *j) {
     camber_mesh_state first = {0};
     const camber_status seen = strokes ? see_mesh(j->checked->mesh, j->s, &j->desc, true, &first) : CAMBER_ERROR_MEMORY;
     camber_status status = seen;
-    for (int way = 0; way < WAYS && status == CAMBER_OK; way++)
+    for (int way = 0; way < IN_GROUPS + (int)j->checked->group_count && status == CAMBER_OK; way++)
         status = check_way(j, way, &first);
     camber_mesh_state_close(&first);
     free(strokes);

@@ -111,7 +111,7 @@ static camber_status open_drawer(camber_validation *v, camber_checked_device *ch
 static void close_device(camber_checked_device *checked) {
     for (size_t i = 0; i < checked->drawer_count; i++)
         close_drawer(&checked->drawers[i]);
-    for (size_t i = 0; i < CAMBER_CHECKED_GROUPS; i++) {
+    for (size_t i = 0; i < checked->group_count; i++) {
         camber_mesh_destroy(checked->groups[i].mesh);
         camber_device_destroy(checked->groups[i].device);
     }
@@ -127,7 +127,9 @@ static camber_status open_plain(camber_validation *v, camber_checked_device *che
     /* a GPU has one lane, and its compiler takes minutes for vectors */
     const bool has_vectors =
         status == CAMBER_OK && camber_device_get_info(checked->device).type == CAMBER_DEVICE_TYPE_CPU;
-    for (size_t i = 0; i < CAMBER_CHECKED_GROUPS && status == CAMBER_OK; i++) {
+    if (status == CAMBER_OK && !camber_device_get_info(checked->device).fixed_kernels)
+        checked->group_count = CAMBER_CHECKED_GROUPS;
+    for (size_t i = 0; i < checked->group_count && status == CAMBER_OK; i++) {
         desc.work_group_size = checked->groups[i].size = group_sizes[i];
         desc.lanes = checked->groups[i].lanes = has_vectors ? lanes[i] : 1;
         status = open_alone(v, &desc, &checked->groups[i].device, &checked->groups[i].mesh);

@@ -33,7 +33,8 @@ struct camber_checked_device {
         uint32_t size, lanes;
         camber_device *device;
         camber_mesh *mesh;
-    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes and lanes */
+    } groups[CAMBER_CHECKED_GROUPS]; /* other work-group sizes and lanes, group_count of them */
+    size_t group_count;
     camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count of them */
     size_t drawer_count;
     /* [camber_method]: the current subject's mesh differs from the twin's, and is not drawn */

@@ -324,6 +324,12 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
+group='along lines: glyphs'
+mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \
+    'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.0f)'
+mutant strip kernels/tile_state.h "glyphs: halos shine through them" 'c->level[level][i][3][v] = through * (1.0f - area)' \
+    'c->level[level][i][3][v] = through'
+mutant strip kernels/join.h "glyphs: halos without round corners" 'turn.c > row->round_cos' 'turn.c < row->round_cos'
 group='along lines'
 mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
 mutant strip kernels/features.h "a fade half as wide" '(blur + 1.0f)' '(0.5f * blur + 1.0f)'

@@ -151,7 +151,8 @@ static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *m
             camber_image_use_in_fill(fill->image, 0, (double)fill->width_px, (double)fill->height_px),
             camber_image_use_as_mean(fill->image, 0)};
         const camber_draw_list list = {.image_uses = uses};
-        const camber_fill_paint paint = {fill->color, true, 0, 1, fill->x_px, fill->y_px, fill->bearing_deg};
+        const camber_fill_paint paint = {fill->color,        true, 0, 1, fill->x_px, fill->y_px, fill->bearing_deg,
+                                         .upright = pass > 0};
         brushes[number] = (camber_brush){.r = 1, .g = 1, .b = 1, .a = pass ? 1 : 0.6f, .mode = CAMBER_BRUSH_AREA};
         brushes[number].fill = pass ? FIRST : 0;
         brush_ext[number].features = CAMBER_FEATURE_IMAGE;
@@ -160,7 +161,8 @@ static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *m
         assert_int_equal(is_opaque, (fill->image - d->images) % 2 == 0);
     }
     const size_t count = mesh->polyline_count;
-    const camber_raster_input runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
+    const camber_raster_input runs[] = {{mesh, 0, count, 0},
+                                        {mesh, count / 3, count, CAMBER_KERNEL_ROWS, .upright = true}};
     camber_raster_scene drawn = {.rows = rows[0],
                                  .row_count = ROWS,
                                  .brushes = brushes,

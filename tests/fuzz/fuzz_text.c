@@ -59,6 +59,27 @@ static void check(fuzz_run *run, camber_fonts *fonts, const camber_text_run *of,
     }
 }
 
+/* Draws the text at a point and along a line that turns. */
+static void draw(fuzz_run *run, camber_fonts *fonts, const camber_text *text, uint8_t how) {
+    const float line[] = {0.0f, 0.0f, 200.0f, 10.0f, 200.0f, 10.0f, 150.0f, (float)how, 900.0f, 0.0f};
+    const camber_text_position positions[] = {
+        {.x = 10.0f, .size_px = 12.0f, .turn_deg = (float)how},
+        {.size_px = 12.0f, .points = line, .point_count = 5, .shift_px = (float)how, .max_turn_deg = 180.0f}};
+    camber_text_rings *rings = NULL;
+    camber_text_box box;
+    if (!fuzz_done(run, camber_text_rings_create(fonts, &rings)))
+        return;
+    for (size_t i = 0; i < (text->vertical ? 1u : 2u); i++)
+        if (fuzz_done(run, camber_text_rings_add(rings, text, &positions[i], &box))) {
+            const camber_polylines_desc desc = camber_text_rings_get(rings);
+            REQUIRE(desc.offsets[desc.polyline_count] == desc.point_count);
+            for (size_t p = 0; p < 2 * desc.point_count; p++)
+                REQUIRE(isfinite(desc.points[p]));
+        }
+    camber_text_rings_remove_last(rings);
+    camber_text_rings_destroy(rings);
+}
+
 static void lay_out(fuzz_run *run, const camber_fonts_desc *desc, const camber_text_run *of, uint8_t how) {
     camber_fonts *fonts = NULL;
     camber_text *text = NULL;
@@ -70,8 +91,10 @@ static void lay_out(fuzz_run *run, const camber_fonts_desc *desc, const camber_t
                                        .justify = (camber_text_justify)(how & 3),
                                        .vertical = how >> 7};
     if (fuzz_done(run, camber_fonts_create(run->context, desc, &fonts)) &&
-        fuzz_done(run, camber_text_shape(fonts, &laid_out, &text)))
+        fuzz_done(run, camber_text_shape(fonts, &laid_out, &text))) {
         check(run, fonts, of, text);
+        draw(run, fonts, text, how);
+    }
     camber_text_destroy(text);
     camber_fonts_destroy(fonts);
 }

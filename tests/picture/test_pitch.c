@@ -140,6 +140,7 @@ typedef struct look {
     camber_dash dash;
     uint32_t largest_area_px;
     float alpha; /* 0: 1 */
+    bool upright;
 } look;
 
 static picture draw(const fixture *s, camber_renderer *renderer, const figure *f, const look *l) {
@@ -155,7 +156,8 @@ static picture draw(const fixture *s, camber_renderer *renderer, const figure *f
     const camber_paint paint = {.width_px = f->width_px,
                                 .color = {1, 1, 1, l->alpha > 0 ? l->alpha : 1},
                                 .dash = l->dash.count > 0 ? &l->dash : NULL};
-    const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .overlap = l->overlap};
+    const camber_pass pass = {
+        .mesh = mesh, .paints = &paint, .paint_count = 1, .overlap = l->overlap, .upright = l->upright};
     const camber_frame frame = {.width = WIDE,
                                 .height = HIGH,
                                 .passes = &pass,
@@ -427,6 +429,80 @@ static void test_area_streaks(void **state) {
     assert_true(total[0] > 10000 && total[1] > 10000);
 }
 
+/* ---- Upright passes ---- */
+
+/* Upright lines look as they do without a pitch, at any pitch that shows no sky. */
+static void test_upright_lines(void **state) {
+    const fixture *s = *state;
+    for (size_t f = 0; f < sizeof FIGURES / sizeof *FIGURES; f++)
+        for (int b = 0; b < CAMBER_FIXTURE_DRAWERS; b++) {
+            if (!s->on.renderer[b])
+                continue;
+            picture flat = draw(s, s->on.renderer[b], FIGURES + f, &(look){.method = CAMBER_METHOD_STRIP});
+            for (int i = 0; i < 4; i++) {
+                const look l = {
+                    .pitch_deg = PITCHES[i % 2], .alpha = 1, .upright = true, .overlap = (camber_overlap)(i / 2)};
+                picture upright = draw(s, s->on.renderer[b], FIGURES + f, &l);
+                const difference d = picture_compare(&flat, &upright);
+                if (d.mean > 1.5 || d.most > 90)
+                    fail_msg("%s at %g degrees with %s: %.2f of 255 on average, %d at most", FIGURES[f].name,
+                             l.pitch_deg, fixture_name(b), d.mean, d.most);
+                picture_free(&upright);
+            }
+            picture_free(&flat);
+        }
+}
+
+/* Upright areas of a colour or an image, above the same areas in the plane: where they have no ink the plane is seen,
+ * and where they cover pixels, they look as without a pitch. */
+static void test_upright_areas(void **state) {
+    const fixture *s = *state;
+    static float points[2 * RINGS * CORNERS];
+    uint8_t texels[4 * 16];
+    for (uint32_t i = 0; i < 16; i++)
+        memcpy(texels + 4 * i, (const uint8_t[]){(uint8_t)(16 * i), (uint8_t)(255 - 9 * i), 80, 255}, 4);
+    const camber_image image = {.rgba = texels, .width = 4, .height = 4};
+    const camber_fill fills[] = {
+        {.color = {0, 1, 0, 1}},
+        {.color = {1, 1, 1, 1}, .image = &image, .width_px = 30, .height_px = 20, .x_px = 3, .bearing_deg = 25}};
+    const camber_fill red = {.color = {1, 0, 0, 1}};
+    const camber_paint below = {.fill = &red};
+    for (int b = 0; b < CAMBER_FIXTURE_DRAWERS; b++)
+        for (int k = 0; k < 2 && s->on.renderer[b]; k++) {
+            camber_mesh *mesh = make_stars(s, s->on.renderer[b], 7, points);
+            const camber_paint above = {.fill = fills + k};
+            const camber_pass passes[] = {{.mesh = mesh, .paints = &below, .paint_count = 1},
+                                          {.mesh = mesh,
+                                           .paints = &above,
+                                           .paint_count = 1,
+                                           .first_polyline = 5,
+                                           .polyline_count = 9,
+                                           .upright = true}};
+            camber_frame frame = {.width = WIDE, .height = HIGH, .passes = passes, .pass_count = 2, .pitch_deg = 60};
+            picture both = picture_draw(s->on.renderer[b], &frame);
+            frame.pass_count = 1;
+            picture plane = picture_draw(s->on.renderer[b], &frame);
+            frame.passes = passes + 1;
+            frame.pitch_deg = 0;
+            picture top = picture_draw(s->on.renderer[b], &frame);
+            size_t covered = 0, clear = 0, off = 0;
+            for (uint32_t i = 0; i < WIDE * HIGH; i++) {
+                const uint8_t *seen = both.rgba + 4 * i, *over = top.rgba + 4 * i, *under = plane.rgba + 4 * i;
+                covered += over[3] == 255;
+                clear += over[3] == 0;
+                for (int c = 0; c < 4; c++)
+                    off += (over[3] == 255 && abs(seen[c] - over[c]) > 2) || (over[3] == 0 && seen[c] != under[c]);
+            }
+            printf("# upright areas, %s, fill %d: %zu pixels covered, %zu clear, %zu channels off\n", fixture_name(b),
+                   k, covered, clear, off);
+            assert_true(covered > 200 && clear > 200 && off <= 8); /* an edge may pass a corner of a pixel */
+            picture_free(&top);
+            picture_free(&plane);
+            picture_free(&both);
+            camber_mesh_destroy(mesh);
+        }
+}
+
 /* ---- Along the line ---- */
 
 /* Each dash by itself. */
@@ -636,10 +712,20 @@ static void test_bad_pitch(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_oracle),   cmocka_unit_test(test_nearly_flat), cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_backends), cmocka_unit_test(test_horizon),     cmocka_unit_test(test_area_streaks),
-        cmocka_unit_test(test_dashes),   cmocka_unit_test(test_far_dashes),  cmocka_unit_test(test_fine_round_dashes),
-        cmocka_unit_test(test_network),  cmocka_unit_test(test_window),      cmocka_unit_test(test_bad_pitch),
+        cmocka_unit_test(test_oracle),
+        cmocka_unit_test(test_nearly_flat),
+        cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_backends),
+        cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_area_streaks),
+        cmocka_unit_test(test_upright_lines),
+        cmocka_unit_test(test_upright_areas),
+        cmocka_unit_test(test_dashes),
+        cmocka_unit_test(test_far_dashes),
+        cmocka_unit_test(test_fine_round_dashes),
+        cmocka_unit_test(test_network),
+        cmocka_unit_test(test_window),
+        cmocka_unit_test(test_bad_pitch),
     };
     return FIXTURE_RUN(tests);
 }

@@ -88,6 +88,8 @@ static map open_with(camber_context *context, const char *base, const char *laye
     m.status = camber_style_parse(context, json, strlen(json), "test", &m.style);
     if (m.status == CAMBER_OK)
         m.status = camber_features_create(context, m.style, &m.features);
+    if (m.status == CAMBER_OK && strstr(layers, "symbol"))
+        m.status = camber_features_read_fonts(m.features, &(camber_fonts_desc){.no_system = true}, NULL);
     if (m.status == CAMBER_OK)
         m.status = camber_features_read_sources(m.features, &view, base);
     if (m.status == CAMBER_OK)
@@ -403,6 +405,32 @@ static void test_sprites(void **state) {
     close_map(&m);
 }
 
+/* ---- Icons ---- */
+
+#define SYMBOLS(id, kind, layout)                                                                                      \
+    "{\"id\":\"" id "\",\"type\":\"symbol\",\"source\":\"g\",\"filter\":[\"==\",\"kind\",\"" kind "\"],\"layout\":{"   \
+    "\"symbol-placement\":\"line-center\"," layout "}}"
+
+/* Icons are drawn as they are, whatever labels are below them. */
+static void test_icons(void **state) {
+    static const char icons[] = SYMBOLS("i", "a", "\"icon-image\":\"a\",\"icon-size\":4");
+    static const char texts_below[] =
+        SYMBOLS("t", "b", "\"text-field\":\"below\"") "," SYMBOLS("i", "a", "\"icon-image\":\"a\",\"icon-size\":4");
+    picture alone = draw_layers(*state, icons, view_at(1)), above = draw_layers(*state, texts_below, view_at(1));
+    size_t inked = 0;
+    for (uint32_t x = 0; x < SIDE; x++)
+        for (uint32_t y = 0; y < SIDE; y++)
+            inked += y < 100 && picture_at(&above, x, y)[3] == 255;
+    assert_true(inked > 10); /* the text */
+    for (int column = 1; column < 3; column++) {
+        const uint8_t *a = picture_at(&alone, (uint32_t)(122 + 4 * column), 128);
+        assert_memory_equal(a, picture_at(&above, (uint32_t)(122 + 4 * column), 128), 4);
+        assert_int_equal(a[3], 255);
+    }
+    picture_free(&alone);
+    picture_free(&above);
+}
+
 static camber_status try_map(camber_context *context, void *user) {
     const char *layers = user;
     map m = open_with(context, shared->base, layers, view_at(1));
@@ -427,7 +455,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_line),     cmocka_unit_test(test_zooms),   cmocka_unit_test(test_expressions),
         cmocka_unit_test(test_features), cmocka_unit_test(test_windows), cmocka_unit_test(test_background),
-        cmocka_unit_test(test_order),    cmocka_unit_test(test_sprites), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_order),    cmocka_unit_test(test_sprites), cmocka_unit_test(test_icons),
+        cmocka_unit_test(test_memory),
     };
     static folder f;
     if (!fixture_begin())

@@ -108,7 +108,7 @@ def make_lines(path, count=60, reach=6.0):
 def render(source, center, size, zoom, *options):
     """A picture around a place in tiles."""
     longitude, latitude = place(*center)
-    camber("render", source, "-o", "large.png", "-f", "-q", "--no-labels", "--center", f"{longitude:.15f},{latitude:.15f}",
+    camber("render", source, "-o", "large.png", "-f", "-q", "--center", f"{longitude:.15f},{latitude:.15f}",
            "--zoom", zoom, "--size", f"{size}x{size}", *options)
     return decode(read("large.png"))
 
@@ -129,6 +129,14 @@ STYLES = {
     "dashed": [{"paint": {"line-width": 5, "line-dasharray": [3, 2, 0.5, 2], "line-color": "#101010"},
                 "layout": {"line-cap": "round"}}],
     "patterned": [{"paint": {"line-width": 18, "line-pattern": "arrow"}}],
+    "labelled": [{"paint": {"line-width": 3, "line-color": "#c0a080"}},
+                 {"type": "symbol", "layout": {"symbol-placement": "line", "symbol-spacing": 150, "text-size": 13,
+                                               "text-field": ["concat", "Road ", ["to-string", ["get", "class"]]]},
+                  "paint": {"text-halo-width": 1.5, "text-halo-color": "#ffffff"}},
+                 {"type": "symbol", "layout": {"icon-image": "arrow", "text-size": 15, "text-radial-offset": 0.8,
+                                               "text-field": ["concat", "Start of ", ["to-string", ["get", "class"]]],
+                                               "text-variable-anchor": ["left", "right", "top", "bottom"]},
+                  "paint": {"text-halo-width": 2, "text-halo-color": "#ffe0a0"}}],
     "gap": [{"paint": {"line-width": 4, "line-gap-width": 17, "line-translate": [13, -9], "line-color": "#a06000"}}],
 }
 
@@ -143,7 +151,7 @@ def write_style(name, layers, background="#f2efe9"):
                                 "paint": {"background-color": background}})
     for i, layer in enumerate(layers):
         style["layers"].append({"id": f"layer{i}", "type": "line", "source": "lines", **layer})
-    if "pattern" in json.dumps(style):
+    if "pattern" in json.dumps(style) or "icon-image" in json.dumps(style):
         style["sprite"] = "sprite"
         write_sprite()
     with open(f"{name}.json", "w") as file:
@@ -254,7 +262,7 @@ RANGE = ("--min-zoom", "9", "--max-zoom", "13")
 def test_same_bytes():
     """Threads, memory and shards change nothing, in each format."""
     make_lines("lines.geojson")
-    common = ("lines.geojson", "--style", write_style("dashed", STYLES["dashed"]), *RANGE)
+    common = ("lines.geojson", "--style", write_style("dashed", STYLES["dashed"] + STYLES["labelled"][1:]), *RANGE)
     tiles(*common, "-o", "one.pmtiles")
     whole = read("one.pmtiles")
     camber("tiles", "verify", "one.pmtiles")
@@ -282,7 +290,8 @@ def test_same_bytes():
 def test_schedule():
     """Shards that go by a schedule make the same archive, and refuse a schedule that is of something else."""
     make_lines("lines.geojson", 200, reach=200.0)
-    common = ["lines.geojson", "--style", write_style("dashed", STYLES["dashed"]), "--max-zoom", "13"]
+    style = write_style("dashed", STYLES["dashed"] + STYLES["labelled"][1:])
+    common = ["lines.geojson", "--style", style, "--max-zoom", "13"]
     tiles(*common, "-o", "one.pmtiles", "-f")
     whole = read("one.pmtiles")
     tiles(*common, "-o", "one.pmtiles", "--dry-run", "--schedule", "plan", status=0)
@@ -373,7 +382,7 @@ def size_of(path):
 def test_killed():
     """kill -9 at random moments after a unit has ended, then --resume: the same bytes as uninterrupted."""
     make_lines("lines.geojson", 120)
-    common = ("lines.geojson", "--style", write_style("wide", STYLES["wide"]), "--min-zoom", 9, "--max-zoom", 13)
+    common = ("lines.geojson", "--style", write_style("labelled", STYLES["labelled"]), "--min-zoom", 9, "--max-zoom", 13)
     tiles(*common, "-o", "whole.pmtiles", "--resume")  # from the start, where nothing is there
     whole = read("whole.pmtiles")
     chance, resumed = random.Random(), 0
@@ -523,6 +532,73 @@ def test_renew():
         file.write("13/1/1\n13/1\n")
     line = tiles(*options, "-o", "map.mbtiles", "--renew", "list", status=65).stderr
     expect("line 2" in line, line)
+
+
+def test_labels():
+    """Shuffled input, 64 shards and single tiles: the same labels."""
+    make_lines("lines.geojson")
+    style = write_style("labelled", STYLES["labelled"])
+    tiles("lines.geojson", "--style", style, *RANGE, "-o", "one.pmtiles")
+    whole = read("one.pmtiles")
+    with open("lines.geojson") as file:
+        features = json.load(file)
+    random.Random(5).shuffle(features["features"])
+    with open("shuffled.geojson", "w") as file:
+        json.dump(features, file)
+    tiles("shuffled.geojson", "--style", style, *RANGE, "-o", "shuffled.mbtiles", "--name", "one")
+    tiles("lines.geojson", "--style", style, *RANGE, "-o", "one.mbtiles")
+    there, shuffled = archive("one.mbtiles"), archive("shuffled.mbtiles")
+    expect(there.keys() == shuffled.keys(), "shuffled: other tiles")
+    for key, data in there.items():
+        if data != shuffled[key]:
+            worst = difference(decode(data), decode(shuffled[key]))
+            expect(worst <= 1, f"shuffled: {key} differs by {worst}")
+    parts = []
+    for part in range(1, 65):
+        tiles("lines.geojson", "--style", style, *RANGE, "-o", "one.pmtiles", "--shard", f"{part}/64")
+        parts.append(f"one.{part}-of-64.pmtiles")
+    camber("tiles", "merge", *parts, "-o", "merged.pmtiles", "-f")
+    expect(read("merged.pmtiles") == whole, "64 shards: other bytes")
+    some = [key for key in there if key[0] == ZOOM]
+    for key in some[::max(1, len(some) // 3)]:
+        tiles("lines.geojson", "--style", style, "-o", "single.mbtiles", "-f", "--tile", "/".join(map(str, key)))
+        expect(archive("single.mbtiles") == {key: there[key]}, f"{key} alone has other bytes")
+    tiles("lines.geojson", "--style", style, *RANGE, "-o", "lines.mbtiles", "--no-labels")
+    expect(archive("lines.mbtiles").keys() <= there.keys(), "a tile with lines is missing")
+    camber("tiles", "verify", "one.pmtiles")
+
+
+def test_renew_labels():
+    """Of new data, only the changed line's tile is listed; tiles whose labels have moved are renewed by the record."""
+    style = write_style("labelled", STYLES["labelled"])
+    make_lines("data.geojson")
+    common = ("data.geojson", "--style", style, "--name", "map")
+    tiles(*common, "-o", "map.mbtiles", *RANGE, "--label-record", "labels")
+    old = archive("map.mbtiles")
+    with open("data.geojson") as file:
+        data = json.load(file)
+    data["features"].append({"type": "Feature", "properties": {"class": 9}, "geometry": {
+        "type": "LineString", "coordinates": [place(COLUMN + 0.02, ROW + 0.5), place(COLUMN + 0.05, ROW + 0.52)]}})
+    with open("data.geojson", "w") as file:
+        json.dump(data, file)
+    tiles(*common, "-o", "new.mbtiles", *RANGE, "--label-record", "wanted")
+    new = archive("new.mbtiles")
+    listed = [(ZOOM - n, COLUMN >> n, ROW >> n) for n in range(14) if (ZOOM - n, COLUMN >> n, ROW >> n) in new]
+    changed = {key for key in old.keys() | new.keys() if old.get(key) != new.get(key)}
+    expect(changed - set(listed), "the label touches no other tile")
+    with open("list", "w") as file:
+        file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
+    with sqlite3.connect("map.mbtiles") as base, sqlite3.connect("left.mbtiles") as copy:
+        base.backup(copy)
+    said = camber("tiles", *common, "-o", "left.mbtiles", "--renew", "list").stderr
+    expect("labels that have moved" in said and archive("left.mbtiles") != new, f"without a record: {said}")
+    said = camber("tiles", *common, "-o", "map.mbtiles", "--renew", "list", "--label-record", "labels").stderr
+    expect("not listed, but with other labels" in said and archive("map.mbtiles") == new, f"with a record: {said}")
+    expect(read("labels") == read("wanted"), "the record is not the new one")
+    write("labels", read("labels")[:-3])
+    tiles(*common, "-o", "map.mbtiles", "--renew", "list", "--label-record", "labels", status=65)
+    tiles(*common, "-o", "x.mbtiles", "--shard", "1/2", "--label-record", "labels", status=2)
+    tiles(*common, "-o", "x.mbtiles", "--no-labels", "--label-record", "labels", status=2)
 
 
 def test_merged_sizes():
@@ -767,7 +843,7 @@ def test_usage():
 def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed,
-             test_stopped, test_other_run, test_renew, test_merged_sizes, test_area, test_folders, test_dry_run,
+             test_stopped, test_other_run, test_renew, test_labels, test_renew_labels, test_merged_sizes, test_area, test_folders, test_dry_run,
              test_metadata, test_schemas, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
     for test in named or tests:

@@ -12,9 +12,9 @@ cd "$folder"
 # through a tunnel (11); the way 13 is 1's other track, 11 m away. Route 3 crosses both.
 cat >routes.osm <<'XML'
 <osm version="0.6">
-  <node id="1" lon="0" lat="0"/><node id="2" lon="0.01" lat="0"/><node id="3" lon="0.02" lat="0"/>
+  <node id="1" lon="0" lat="0"><tag k="name" v="West End"/></node><node id="2" lon="0.01" lat="0"/><node id="3" lon="0.02" lat="0"/>
   <node id="4" lon="0.02" lat="0.01"/><node id="5" lon="0.005" lat="-0.01"/><node id="6" lon="0.005" lat="0.01"/>
-  <node id="7" lon="0" lat="0.0001"/><node id="8" lon="0.02" lat="0.0001"/>
+  <node id="7" lon="0" lat="0.0001"><tag k="name" v="West End"/></node><node id="8" lon="0.02" lat="0.0001"/>
   <way id="10"><nd ref="1"/><nd ref="2"/><tag k="railway" v="subway"/></way>
   <way id="11"><nd ref="2"/><nd ref="3"/><tag k="railway" v="subway"/><tag k="tunnel" v="yes"/></way>
   <way id="12"><nd ref="2"/><nd ref="4"/></way>
@@ -25,6 +25,7 @@ cat >routes.osm <<'XML'
   <relation id="2"><member type="way" ref="13" role=""/><member type="node" ref="1" role="stop"/>
     <tag k="type" v="route"/><tag k="route" v="subway"/><tag k="ref" v="1"/><tag k="colour" v="#FF0000"/></relation>
   <relation id="3"><member type="way" ref="10" role=""/><member type="way" ref="12" role=""/><member type="way" ref="99" role=""/>
+    <member type="node" ref="7" role="stop"/>
     <tag k="type" v="route"/><tag k="route" v="subway"/><tag k="ref" v="2"/><tag k="colour" v="red"/></relation>
   <relation id="4"><member type="way" ref="14" role=""/>
     <tag k="type" v="route"/><tag k="route" v="subway"/><tag k="ref" v="3"/><tag k="state" v="proposed"/></relation>
@@ -40,7 +41,7 @@ features = json.load(open("transit.geojson"))["features"]
 
 
 def those(ref):
-    return [(f["properties"], f["geometry"]["coordinates"]) for f in features if f["properties"]["ref"] == ref]
+    return [(f["properties"], f["geometry"]["coordinates"]) for f in features if f["properties"].get("ref") == ref]
 
 
 def expect(holds, what):
@@ -48,10 +49,13 @@ def expect(holds, what):
         raise SystemExit(f"{what}: {json.dumps(features)}")
 
 
-expect({f["properties"]["mode"] for f in features} == {"subway"}, "modes")
+expect({f["properties"]["mode"] for f in features if "station" not in f["properties"]} == {"subway"}, "modes")
+(station, at), = [(f["properties"], f["geometry"]["coordinates"]) for f in features if "station" in f["properties"]]
+expect(station == {"station": "West End", "group": "metro"} and abs(at[0]) < 0.0001 and 0 <= at[1] <= 0.0001, "a station")
 (shared, along), = [it for it in those("1") if it[0]["routes"] == 2]
 (other, beside), = [it for it in those("2") if it[0]["routes"] == 2]
 expect(along == beside and (shared["slot"], other["slot"]) == (-0.5, 0.5), "slots of a shared street")
+expect(shared["refs"] == "1  2" and "refs" not in other, "numbers of a shared street")
 expect(shared["colour"] == "#ff0000" and other["colour"] == "red", "colours")
 ends = sorted([along[0][0], along[-1][0]])
 expect(abs(ends[0]) < 0.0001 and abs(ends[1] - 0.01) < 0.0003, "where the shared street lies")

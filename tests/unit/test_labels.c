@@ -1,167 +1,7 @@
 /* Labels of a view: which are shown, and where their glyphs and icons are. */
+#include "town.h"
+
 #include "map/collision.h"
-#include "map/label_layout.h"
-#include "style/style.h"
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-/* ---- Features by hand, with a name and a kind ---- */
-
-enum { MOST = 20000, CLASSES = 2048, VALUES = 4 * CLASSES, WORLD = 1024 };
-
-typedef struct town {
-    camber_context *context;
-    camber_style *style;
-    camber_fonts *fonts;
-    camber_features features;
-    camber_view view;
-    camber_sprites sprites;
-    camber_sprite_image images[2];
-    double points[2 * MOST];
-    size_t offsets[MOST];
-    uint32_t polyline_feature[MOST], feature_counts[MOST], feature_class[MOST];
-    camber_feature_class classes[CLASSES];
-    camber_value values[VALUES];
-    char names[CLASSES][16];
-    char *layer_name;
-    char layer_text[8];
-    char last[512];
-    int errors;
-} town;
-
-static void take_log(void *user, camber_log_level level, const char *message) {
-    town *t = user;
-    t->errors += level == CAMBER_LOG_ERROR;
-    snprintf(t->last, sizeof t->last, "%s", message);
-}
-
-/* A symbol layer that shows names in the font that camber ships. */
-#define NAMES(id, layout)                                                                                              \
-    "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"text-field\":[\"get\",\"name\"]," layout "}}"
-/* An icon for what has no name. */
-#define ICONS(id, layout) "{\"id\":\"" id "\",\"type\":\"symbol\",\"layout\":{\"icon-image\":\"box\"," layout "}}"
-
-static town *open_town(const char *layers) {
-    town *t = calloc(1, sizeof *t);
-    assert_non_null(t);
-    assert_int_equal(
-        camber_context_create(&(camber_context_desc){.log = take_log, .log_user = t, .cache_dir = ""}, &t->context),
-        CAMBER_OK);
-    char json[8192];
-    const int length = snprintf(json, sizeof json, "{\"version\":8,\"sources\":{},\"layers\":[%s]}", layers);
-    if (camber_style_parse(t->context, json, (size_t)length, "test", &t->style) != CAMBER_OK)
-        fail_msg("%s", t->last);
-    assert_int_equal(camber_fonts_create(t->context, &(camber_fonts_desc){.no_system = true}, &t->fonts), CAMBER_OK);
-    strcpy(t->layer_text, "all");
-    t->layer_name = t->layer_text;
-    t->features = (camber_features){.context = t->context,
-                                    .style = t->style,
-                                    .schema = &t->style->schema,
-                                    .points = t->points,
-                                    .offsets = t->offsets,
-                                    .polyline_feature = t->polyline_feature,
-                                    .feature_counts = t->feature_counts,
-                                    .feature_class = t->feature_class,
-                                    .classes = t->classes,
-                                    .values = t->values,
-                                    .layer_names = &t->layer_name,
-                                    .layer_count = 1};
-    /* Two images: a box of 10 x 20 px, and a frame of 30 x 30 that stretches between 10 and 20. */
-    static float stretch[1][2] = {{10.0f, 20.0f}};
-    t->images[0] = (camber_sprite_image){.name = (char *)"box", .width = 10, .height = 20, .pixel_ratio = 1.0};
-    t->images[1] = (camber_sprite_image){.name = (char *)"frame",
-                                         .width = 30,
-                                         .height = 30,
-                                         .pixel_ratio = 1.0,
-                                         .stretch_x = stretch,
-                                         .stretch_y = stretch,
-                                         .stretch_x_count = 1,
-                                         .stretch_y_count = 1};
-    t->sprites = (camber_sprites){.context = t->context, .images = t->images, .image_count = 2};
-    const camber_view_desc view = {.kind = CAMBER_VIEW_CENTER, .zoom = 1.0};
-    assert_int_equal(camber_view_create(t->context, &view, &t->view), CAMBER_OK);
-    return t;
-}
-
-static void close_town(town *t) {
-    for (size_t i = 0; i < t->sprites.missing_count; i++)
-        camber_free(t->context, t->sprites.missing[i]);
-    camber_free(t->context, t->sprites.missing);
-    camber_fonts_destroy(t->fonts);
-    camber_style_destroy(t->style);
-    camber_context_destroy(t->context);
-    free(t);
-}
-
-static uint32_t add_class(town *t, camber_geometry_kind kind, const char *name) {
-    const size_t width = t->style->schema.property_count, c = t->features.class_count++;
-    assert_true(c < CLASSES && (c + 1) * width <= VALUES);
-    snprintf(t->names[c], sizeof t->names[c], "%s", name);
-    t->classes[c] = (camber_feature_class){
-        .source = CAMBER_NO_SOURCE, .geometry = kind, .first_value = c * width, .labelled = true};
-    for (size_t i = 0; i < width; i++)
-        if (strcmp(t->style->schema.properties[i], "name") == 0)
-            t->values[c * width + i] = (camber_value){.type = CAMBER_VALUE_STRING, .string = t->names[c]};
-    return (uint32_t)c;
-}
-
-/* Adds a polyline in px of the picture at zoom 1, where the world is WORLD px wide; new: to a feature of its own. */
-static void add_polyline(town *t, uint32_t class, bool new, const double *px, size_t count) {
-    camber_features *f = &t->features;
-    assert_true(f->point_count + count <= MOST && f->polyline_count + 1 < MOST);
-    for (size_t i = 0; i < 2 * count; i++)
-        t->points[2 * f->point_count + i] = px[i] / WORLD;
-    f->point_count += count;
-    t->offsets[f->polyline_count + 1] = f->point_count;
-    if (new)
-        t->feature_class[f->feature_count++] = class;
-    t->feature_counts[f->polyline_count] = new;
-    t->polyline_feature[f->polyline_count++] = (uint32_t)f->feature_count - 1;
-}
-
-static void add_feature(town *t, camber_geometry_kind kind, const char *name, const double *px, size_t count) {
-    add_polyline(t, add_class(t, kind, name), true, px, count);
-}
-
-static void add_point(town *t, const char *name, double x, double y) {
-    add_feature(t, CAMBER_GEOMETRY_LABEL_POINT, name, (const double[]){x, y}, 1);
-}
-
-static camber_labels place(town *t) {
-    camber_labels labels;
-    if (camber_labels_place(&t->features, &t->view, t->fonts, &t->sprites, &labels) != CAMBER_OK)
-        fail_msg("%s", t->last);
-    return labels;
-}
-
-static void see(town *t, camber_view_desc view) {
-    assert_int_equal(camber_view_create(t->context, &view, &t->view), CAMBER_OK);
-}
-
-static void assert_near(double a, double b, double tolerance) {
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.9g is not %.9g within %g", a, b, tolerance);
-}
-
-static void expect_count(town *t, size_t count) {
-    camber_labels labels = place(t);
-    assert_int_equal(labels.label_count, count);
-    camber_labels_free(&labels);
-}
-
-/* A small generator of numbers from 0 to 1. */
-static double next_share(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
-    return (*state >> 8) / 16777216.0;
-}
 
 /* ---- The grid ---- */
 
@@ -169,8 +9,8 @@ static camber_obstacle random_shape(uint32_t *state) {
     const double x = next_share(state) * 500.0 - 50.0, y = next_share(state) * 300.0 - 50.0;
     const double w = next_share(state) * 60.0, h = next_share(state) * 20.0;
     if (next_share(state) < 0.5)
-        return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + h), 0.0f};
-    return (camber_obstacle){(float)x, (float)y, (float)(x + w), (float)(y + w), (float)(0.5 * w)};
+        return (camber_obstacle){x, y, x + w, y + h, 0.0};
+    return (camber_obstacle){x, y, x + w, y + w, 0.5 * w};
 }
 
 static void test_collision(void **state) {
@@ -492,6 +332,33 @@ static void test_line_does_not_depend_on_view(void **state) {
     close_town(t);
 }
 
+/* Between two whole zooms the labels of a line stay where they are on the map, whatever the size of the text. */
+static void test_line_does_not_depend_on_zoom(void **state) {
+    (void)state;
+    const double px[] = {50.0, 500.0, 1000.0, 500.0};
+    town *t =
+        open_town(NAMES("names", ALONG ",\"symbol-spacing\":200,\"text-size\":[\"interpolate\",[\"linear\"],[\"zoom\"],"
+                                       "1,10,2,16]"));
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "Road", px, 2);
+    camber_labels whole = place(t);
+    assert_int_equal(whole.label_count, 5);
+    see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.5, .width = 1440, .height = 1440});
+    camber_labels between = place(t);
+    assert_int_equal(between.label_count, 5);
+    for (size_t i = 0; i < 5; i++) {
+        const camber_box *a = &whole.labels[i].box;
+        double nearest = INFINITY;
+        for (size_t k = 0; k < 5; k++) {
+            const camber_box *b = &between.labels[k].box;
+            nearest = fmin(nearest, fabs((0.5 * (b->x0 + b->x1) - 720.0) / sqrt(2.0) - 0.5 * (a->x0 + a->x1) + 512.0));
+        }
+        assert_near(nearest, 0.0, 0.1);
+    }
+    camber_labels_free(&whole);
+    camber_labels_free(&between);
+    close_town(t);
+}
+
 /* ---- Icons ---- */
 
 static void test_icon(void **state) {
@@ -508,6 +375,48 @@ static void test_icon(void **state) {
     assert_near((double)item->x, 300.0 + 2.0 - 10.0, 1e-4);
     assert_near((double)item->y, 200.0 - 6.0 - 40.0, 1e-4);
     camber_labels_free(&labels);
+    close_town(t);
+}
+
+/* An image that keeps its size is drawn on whole px; others are drawn where they are. */
+static void test_icon_on_whole_px(void **state) {
+    (void)state;
+    static const struct {
+        const char *layout;
+        double x, y;
+    } samples[] = {
+        {"\"icon-size\":1", 295.0, 191.0}, {"\"icon-size\":1.5", 292.8, 185.6}, {"\"icon-rotate\":90", 310.3, 195.6}};
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        char layer[256];
+        snprintf(layer, sizeof layer, ICONS("icons", "%s"), samples[i].layout);
+        town *t = open_town(layer);
+        add_point(t, "", 300.3, 200.6);
+        camber_labels labels = place(t);
+        assert_int_equal(labels.layers[0].icon_count, 1);
+        assert_near((double)labels.items[0].x, samples[i].x, 1e-3);
+        assert_near((double)labels.items[0].y, samples[i].y, 1e-3);
+        camber_labels_free(&labels);
+        close_town(t);
+    }
+}
+
+/* Icons that are too close to each other are left out evenly, wherever the view begins. */
+static void test_icons_along(void **state) {
+    (void)state;
+    const double px[] = {10.0, 500.0, 1014.0, 500.0};
+    town *t = open_town(ICONS("icons", "\"symbol-placement\":\"line\",\"symbol-spacing\":9"));
+    double origin = NAN;
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "", px, 2);
+    for (uint32_t width = 500; width <= 900; width += 90) {
+        see(t, (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = 1.0, .width = width, .height = 512});
+        camber_labels labels = place(t);
+        assert_near((double)labels.item_count, width / 18.0, 1.5);
+        if (isnan(origin))
+            origin = (double)labels.items[0].x - 0.5 * width;
+        for (size_t i = 0; i < labels.item_count; i++)
+            assert_near(remainder((double)labels.items[i].x - 0.5 * width - origin, 18.0), 0.0, 0.01);
+        camber_labels_free(&labels);
+    }
     close_town(t);
 }
 
@@ -674,6 +583,107 @@ static void test_avoid_edges(void **state) {
     close_town(t);
 }
 
+/* ---- Books ---- */
+
+static void expect_same(const camber_labels *got, const camber_labels *expected) {
+    assert_int_equal(got->label_count, expected->label_count);
+    assert_int_equal(got->layer_count, expected->layer_count);
+    assert_int_equal(got->item_count, expected->item_count);
+    assert_int_equal(got->look_count, expected->look_count);
+    for (size_t i = 0; i < got->label_count; i++) {
+        assert_int_equal(got->labels[i].feature, expected->labels[i].feature);
+        assert_memory_equal(&got->labels[i].box, &expected->labels[i].box, sizeof(camber_box));
+    }
+    for (size_t i = 0; i < got->layer_count; i++)
+        assert_memory_equal(got->layers + i, expected->layers + i, sizeof *got->layers);
+    for (size_t i = 0; i < got->item_count; i++) {
+        const camber_label_item *a = got->items + i, *b = expected->items + i;
+        assert_int_equal(a->glyph, b->glyph);
+        assert_ptr_equal(a->icon, b->icon);
+        assert_int_equal(a->label, b->label);
+        assert_memory_equal(&a->x, &b->x, 7 * sizeof(float));
+        const camber_label_look *p = got->looks + a->look, *q = expected->looks + b->look;
+        assert_memory_equal(p, q, offsetof(camber_label_look, flat)); /* what follows has padding */
+        assert_true(p->flat == q->flat);
+    }
+}
+
+static void expect_book(town *t, camber_label_book *book, const camber_view_desc *desc) {
+    camber_view view;
+    camber_labels got;
+    assert_int_equal(camber_view_create(t->context, desc, &view), CAMBER_OK);
+    t->view = view;
+    camber_labels expected = place(t);
+    assert_true(expected.label_count > 10);
+    assert_int_equal(camber_label_book_place(book, &view, &got), CAMBER_OK);
+    expect_same(&got, &expected);
+    camber_labels_free(&got);
+    camber_labels_free(&expected);
+}
+
+/* A book gives the labels that each view has for itself, in whatever order views come, and also after features were
+ * added. */
+static void test_book(void **state) {
+    (void)state;
+    static const double square[] = {300, 300, 700, 300, 700, 520, 300, 520, 300, 300};
+    static const camber_view_desc views[] = {
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .longitude = 30, .latitude = -20},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .longitude = 170, .width = 500, .height = 300},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1.7, .longitude = 30},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1.7, .longitude = -30},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .bearing_deg = 33},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .bearing_deg = 33, .longitude = 9},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .pitch_deg = 50},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .pitch_deg = 50, .latitude = 10},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1, .ratio = 2},
+        {.kind = CAMBER_VIEW_CENTER, .zoom = 1}};
+    town *t = open_town(MANY);
+    camber_label_book *book;
+    add_many(t, 23, false);
+    add_feature(t, CAMBER_GEOMETRY_LABEL_AREA, "Park", square, 5);
+    t->features.fonts = t->fonts;
+    t->features.sprites = &t->sprites;
+    assert_int_equal(camber_label_book_create(&t->features, &book), CAMBER_OK);
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++)
+        expect_book(t, book, views + i);
+    add_point(t, "New", 480, 480);
+    add_point(t, "Newer", 40, 80);
+    expect_book(t, book, views);
+    t->features.sprites = NULL; /* it is no block that the features may free */
+    camber_label_book_destroy(book);
+    close_town(t);
+}
+
+/* A book that runs out of memory gives the same labels as soon as there is some. */
+static void test_book_memory(void **state) {
+    (void)state;
+    town *t = open_town(MANY);
+    camber_label_book *book;
+    camber_labels labels;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    size_t failures = 0;
+    add_many(t, 29, false);
+    t->features.fonts = t->fonts;
+    assert_int_equal(camber_label_book_create(&t->features, &book), CAMBER_OK);
+    camber_labels expected = place(t);
+    const uint64_t held = t->context->budget->held_bytes;
+    for (uint64_t more = 0; status != CAMBER_OK; more += 4096 + more / 16) {
+        camber_budget_allow(t->context->budget, held + more);
+        status = camber_label_book_place(book, &t->view, &labels);
+        assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
+        failures += status != CAMBER_OK;
+        if (status != CAMBER_OK)
+            camber_labels_free(&labels);
+    }
+    assert_true(failures > 10);
+    expect_same(&labels, &expected);
+    camber_labels_free(&labels);
+    camber_labels_free(&expected);
+    camber_label_book_destroy(book);
+    close_town(t);
+}
+
 /* Without memory placing fails, and leaves nothing behind. */
 static void test_memory(void **state) {
     (void)state;
@@ -714,13 +724,18 @@ int main(void) {
         cmocka_unit_test(test_max_angle),
         cmocka_unit_test(test_line_spacing),
         cmocka_unit_test(test_line_does_not_depend_on_view),
+        cmocka_unit_test(test_line_does_not_depend_on_zoom),
         cmocka_unit_test(test_icon),
+        cmocka_unit_test(test_icon_on_whole_px),
+        cmocka_unit_test(test_icons_along),
         cmocka_unit_test(test_text_fit),
         cmocka_unit_test(test_optional),
         cmocka_unit_test(test_pitch),
         cmocka_unit_test(test_shuffled),
         cmocka_unit_test(test_apart),
         cmocka_unit_test(test_avoid_edges),
+        cmocka_unit_test(test_book),
+        cmocka_unit_test(test_book_memory),
         cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

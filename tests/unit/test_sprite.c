@@ -286,6 +286,30 @@ static void test_memory(void **state) {
     close_desk(&d);
 }
 
+/* The sprite of the styles that ship needs no files. Its signs are signed distances: inside in the middle, outside at
+ * the corners. */
+static void test_signs(void **state) {
+    (void)state;
+    static const char *const names[] = {"box", "dot", "square", "triangle"};
+    desk d;
+    camber_sprites *sprites = NULL;
+    open_desk(&d, "\"camber:signs\"");
+    assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 2, &sprites), CAMBER_OK);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const camber_sprite_image *image = camber_sprites_find(sprites, names[i]);
+        assert_non_null(image);
+        assert_true(image->sdf && image->pixel_ratio > 1.0);
+        const uint8_t *rgba = image->image.rgba;
+        const size_t middle = image->height / 2 * image->image.stride_bytes + (size_t)4 * (image->width / 2);
+        assert_true(rgba[3] < 128 && rgba[middle + 3] > 192);
+    }
+    assert_true(camber_sprites_find(sprites, "box")->stretch_x_count == 1);
+    assert_true(camber_sprites_find(sprites, "box")->has_content);
+    each_allocation_fails(&d.h, attempt, d.context, &d);
+    camber_sprites_destroy(sprites);
+    close_desk(&d);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_sheet_and_index),
                                        cmocka_unit_test(test_several),
@@ -293,6 +317,7 @@ int main(void) {
                                        cmocka_unit_test(test_lies),
                                        cmocka_unit_test(test_false_sizes),
                                        cmocka_unit_test(test_wanted),
+                                       cmocka_unit_test(test_signs),
                                        cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -66,7 +66,7 @@ static camber_status parse(fixture *f, const char *json) {
 /* ---- Roads ---- */
 
 typedef struct feature {
-    const char *highway, *type, *mtfcc, *bridge, *tunnel; /* bridge and tunnel: a digit is a number */
+    const char *highway, *type, *mtfcc, *bridge, *tunnel, *layer, *footway; /* a digit is a number */
 } feature;
 
 enum { PROPERTY_LIMIT = 16 };
@@ -86,7 +86,8 @@ static void set_values(const camber_style *style, const feature *road, camber_va
         {"MTFCC", text_value(road->mtfcc)},     {"bridge", text_value(road->bridge)},
         {"tunnel", text_value(road->tunnel)},   {"name", text_value(NULL)},
         {"FULLNAME", text_value(NULL)},         {"ref", text_value(NULL)},
-        {"shield_text", text_value(NULL)},
+        {"shield_text", text_value(NULL)},      {"layer", text_value(road->layer)},
+        {"footway", text_value(road->footway)}, {"name:latin", text_value(NULL)},
     };
     assert_in_range(style->schema.property_count, 1, PROPERTY_LIMIT);
     for (size_t i = 0; i < style->schema.property_count; i++) {
@@ -99,98 +100,101 @@ static void set_values(const camber_style *style, const feature *road, camber_va
     }
 }
 
-/* Exactly the casing and the fill "level-class-..." match; NULL: none. */
-static void check_road(const camber_style *style, const feature *road, const char *expected) {
+/* Writes the ids of the line layers that draw the road at a zoom. Each draws it visibly, or not at all. */
+static void list_layers(const camber_style *style, const feature *road, double zoom, char ids[256]) {
     camber_value values[PROPERTY_LIMIT];
     set_values(style, road, values);
     const camber_feature_view view = {.values = values, .geometry_type = "LineString"};
-    const char *name = road->highway ? road->highway : road->type ? road->type : road->mtfcc ? road->mtfcc : "-";
-    for (double zoom = 0.0; zoom <= 24.0; zoom += 0.5) {
-        size_t matches = 0;
-        for (size_t i = 0; i < style->layer_count; i++) {
-            const camber_style_layer *layer = &style->layers[i];
-            if (layer->kind != CAMBER_LAYER_LINE || layer->plain || !camber_style_layer_matches(layer, zoom, &view))
-                continue;
-            if (!expected || strncmp(layer->id, expected, strlen(expected)) != 0)
-                fail_msg("%s is drawn by %s, not by %s", name, layer->id, expected ? expected : "nothing");
-            const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, &view);
-            assert_true(paint.width > 0.1 && paint.width < 16384.0 && paint.color.a > 0.99f);
-            matches++;
-        }
-        if (matches != (expected ? 2 : 0))
-            fail_msg("%s is drawn by %zu layers at %g", name, matches, zoom);
+    ids[0] = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = &style->layers[i];
+        if (layer->kind != CAMBER_LAYER_LINE || layer->plain || !camber_style_layer_matches(layer, zoom, &view))
+            continue;
+        const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, &view);
+        assert_true(paint.width >= 0.0 && paint.width < 16384.0 && paint.color.a > 0.99f);
+        if (paint.width > 0.0)
+            snprintf(ids + strlen(ids), 256 - strlen(ids), "%s%s", *ids ? " " : "", layer->id);
     }
 }
 
+/* Close up, exactly these layers draw the road. */
+static void check_road(const camber_style *style, const feature *road, const char *expected) {
+    char ids[256];
+    const char *name = road->highway ? road->highway : road->type ? road->type : road->mtfcc ? road->mtfcc : "-";
+    list_layers(style, road, 18.0, ids);
+    if (strcmp(ids, expected) != 0)
+        fail_msg("%s is drawn by \"%s\", not by \"%s\"", name, ids, expected);
+}
+
+typedef enum road_kind { NO_ROAD, A_ROAD, A_WAY } road_kind;
+
+/* from: the first whole zoom at which it is drawn. */
 static const struct {
-    const char *value, *class_name;
+    const char *value;
+    road_kind kind;
+    int from;
 } osm_classes[] = {
-    {"motorway", "motorway"},
-    {"motorway_link", "ramp"},
-    {"trunk", "trunk"},
-    {"trunk_link", "ramp"},
-    {"primary", "primary"},
-    {"primary_link", "primary"},
-    {"secondary", "secondary"},
-    {"secondary_link", "secondary"},
-    {"tertiary", "tertiary"},
-    {"tertiary_link", "tertiary"},
-    {"residential", "minor"},
-    {"unclassified", "minor"},
-    {"living_street", "minor"},
-    {"road", "minor"},
-    {"service", "service"},
-    {"pedestrian", "service"},
-    {"track", "track"},
-    {"footway", "path"},
-    {"cycleway", "path"},
-    {"path", "path"},
-    {"bridleway", "path"},
-    {"steps", "path"},
-    {"rail", NULL},
-    {"proposed", NULL},
-    {"construction", NULL},
-    {"abandoned", NULL},
-    {"platform", NULL},
-    {"pier", NULL},
-    {"narrow_gauge", NULL},
-    {"tram", NULL},
-    {"bus_stop", NULL},
-    {"", NULL},
-    {"multipolygon", NULL},
+    {"motorway", A_ROAD, 0},       {"motorway_link", A_ROAD, 10},
+    {"trunk", A_ROAD, 0},          {"trunk_link", A_ROAD, 10},
+    {"primary", A_ROAD, 6},        {"primary_link", A_ROAD, 11},
+    {"secondary", A_ROAD, 8},      {"secondary_link", A_ROAD, 11},
+    {"tertiary", A_ROAD, 10},      {"tertiary_link", A_ROAD, 12},
+    {"residential", A_ROAD, 12},   {"unclassified", A_ROAD, 12},
+    {"living_street", A_ROAD, 12}, {"road", A_ROAD, 12},
+    {"service", A_ROAD, 13},       {"pedestrian", A_ROAD, 13},
+    {"track", A_WAY, 13},          {"footway", A_WAY, 14},
+    {"cycleway", A_WAY, 14},       {"path", A_WAY, 14},
+    {"bridleway", A_WAY, 14},      {"steps", A_WAY, 15},
+    {"rail", NO_ROAD, 0},          {"proposed", NO_ROAD, 0},
+    {"construction", NO_ROAD, 0},  {"abandoned", NO_ROAD, 0},
+    {"platform", NO_ROAD, 0},      {"pier", NO_ROAD, 0},
+    {"narrow_gauge", NO_ROAD, 0},  {"tram", NO_ROAD, 0},
+    {"bus_stop", NO_ROAD, 0},      {"", NO_ROAD, 0},
+    {"multipolygon", NO_ROAD, 0},
 };
 
 static const struct {
-    const char *value, *class_name;
+    const char *value;
+    road_kind kind;
 } tiger_classes[] = {
-    {"S1100", "motorway"}, {"S1200", "primary"}, {"S1400", "minor"}, {"S1500", "track"},   {"S1630", "ramp"},
-    {"S1640", "service"},  {"S1710", "path"},    {"S1720", "path"},  {"S1730", "service"}, {"S1740", "service"},
-    {"S1750", "service"},  {"S1780", "service"}, {"S1820", "path"},  {"S1830", "path"},    {"R1011", NULL},
-    {"H3010", NULL},       {"L4010", NULL},      {"P0001", NULL},
+    {"S1100", A_ROAD},  {"S1200", A_ROAD},  {"S1400", A_ROAD},  {"S1500", A_WAY},  {"S1630", A_ROAD},
+    {"S1640", A_ROAD},  {"S1710", A_WAY},   {"S1720", A_WAY},   {"S1730", A_ROAD}, {"S1740", A_ROAD},
+    {"S1750", A_ROAD},  {"S1780", A_ROAD},  {"S1820", A_WAY},   {"S1830", A_WAY},  {"R1011", NO_ROAD},
+    {"H3010", NO_ROAD}, {"L4010", NO_ROAD}, {"P0001", NO_ROAD},
 };
 
-static const char *layer_prefix(char text[64], const char *level, const char *class_name) {
-    if (!class_name)
-        return NULL;
-    snprintf(text, 64, "%s-%s-", level, class_name);
+/* The layers that draw a kind of road on a level. Paths in tunnels are left out. */
+static const char *level_layers(char text[128], const char *level, road_kind kind) {
+    text[0] = 0;
+    if (kind == A_ROAD)
+        snprintf(text, 128, "%s-casing %s-fill", level, level);
+    else if (kind == A_WAY && strncmp(level, "bridge", 6) == 0)
+        snprintf(text, 128, "%s-path-edge %s-path-bed %s-path", level, level, level);
+    else if (kind == A_WAY && strcmp(level, "ground") == 0)
+        snprintf(text, 128, "%s-path", level);
     return text;
 }
 
 static void check_roads(const camber_style *style) {
-    char text[64];
+    char text[128];
     static const struct {
-        const char *bridge, *tunnel, *level;
+        const char *bridge, *tunnel, *layer, *level;
     } levels[] = {
-        {NULL, NULL, "ground"},      {"no", "no", "ground"},
-        {"0", "0", "ground"},        {"yes", NULL, "bridge"},
-        {"viaduct", "no", "bridge"}, {"1", "0", "bridge"},
-        {NULL, "yes", "tunnel"},     {"no", "culvert", "tunnel"},
-        {"0", "1", "tunnel"},        {"yes", "building_passage", "tunnel"},
+        {NULL, NULL, NULL, "ground"},     {"no", "no", NULL, "ground"},
+        {"0", "0", "1", "ground"},        {"yes", NULL, NULL, "bridge"},
+        {"viaduct", "no", "1", "bridge"}, {"1", "0", "-1", "bridge"},
+        {"yes", NULL, "odd", "bridge"},   {"yes", NULL, "2", "bridge-2"},
+        {"yes", NULL, "3", "bridge-3"},   {"yes", NULL, "5", "bridge-3"},
+        {NULL, "yes", "-1", "tunnel"},    {"no", "culvert", NULL, "tunnel"},
+        {"0", "1", NULL, "tunnel"},       {"yes", "building_passage", NULL, "tunnel"},
     };
     for (size_t i = 0; i < sizeof osm_classes / sizeof *osm_classes; i++) {
         for (size_t l = 0; l < sizeof levels / sizeof *levels; l++) {
-            feature road = {.highway = osm_classes[i].value, .bridge = levels[l].bridge, .tunnel = levels[l].tunnel};
-            const char *expected = layer_prefix(text, levels[l].level, osm_classes[i].class_name);
+            feature road = {.highway = osm_classes[i].value,
+                            .bridge = levels[l].bridge,
+                            .tunnel = levels[l].tunnel,
+                            .layer = levels[l].layer};
+            const char *expected = level_layers(text, levels[l].level, osm_classes[i].kind);
             check_road(style, &road, expected);
             road.type = road.highway;
             road.highway = NULL;
@@ -199,14 +203,31 @@ static void check_roads(const camber_style *style) {
     }
     for (size_t i = 0; i < sizeof tiger_classes / sizeof *tiger_classes; i++)
         check_road(style, &(feature){.mtfcc = tiger_classes[i].value},
-                   layer_prefix(text, "ground", tiger_classes[i].class_name));
-    check_road(style, &(feature){0}, NULL);
+                   level_layers(text, "ground", tiger_classes[i].kind));
+    check_road(style, &(feature){0}, "");
     /* A way's highway counts, whatever the type of the relation or attribute beside it. */
-    check_road(style, &(feature){.highway = "primary", .type = "rail"}, "ground-primary-");
+    check_road(style, &(feature){.highway = "primary", .type = "rail"}, "ground-casing ground-fill");
 }
 
-static camber_layer_paint paint_of(const camber_style *style, const char *id, double zoom) {
-    camber_value values[PROPERTY_LIMIT] = {{.type = CAMBER_VALUE_NULL}};
+/* Each class begins at its zoom, and is drawn from there on. */
+static void check_generalization(const camber_style *style) {
+    char ids[256];
+    for (size_t i = 0; i < sizeof osm_classes / sizeof *osm_classes; i++) {
+        for (int zoom = 0; zoom <= 24 && osm_classes[i].kind != NO_ROAD; zoom++) {
+            list_layers(style, &(feature){.highway = osm_classes[i].value}, zoom, ids);
+            if ((*ids != 0) != (zoom >= osm_classes[i].from))
+                fail_msg("%s at zoom %d is drawn by \"%s\"", osm_classes[i].value, zoom, ids);
+        }
+    }
+    for (int zoom = 0; zoom <= 24; zoom++) {
+        list_layers(style, &(feature){.highway = "footway", .footway = "sidewalk"}, zoom, ids);
+        assert_string_equal(ids, zoom < 17 ? "" : "ground-path");
+    }
+}
+
+static camber_layer_paint paint_of(const camber_style *style, const char *id, double zoom, const feature *road) {
+    camber_value values[PROPERTY_LIMIT];
+    set_values(style, road, values);
     const camber_feature_view view = {.values = values, .geometry_type = "LineString"};
     for (size_t i = 0; i < style->layer_count; i++)
         if (strcmp(style->layers[i].id, id) == 0)
@@ -215,45 +236,46 @@ static camber_layer_paint paint_of(const camber_style *style, const char *id, do
     return (camber_layer_paint){0};
 }
 
-/* Levels and within them casings before fills, classes in one order; a casing and its fill share their features,
- * and the casing is the wider one. */
+/* Levels from the lowest to the highest, in each the paths, the casings and then the fills. A casing and its fill share
+ * their features, and the casing is wider or not there. */
 static void check_order(const camber_style *style) {
-    static const char *const levels[] = {"tunnel", "ground", "bridge"}, *const parts[] = {"casing", "fill"};
-    static const char *const classes[] = {"path",      "track",   "service", "minor", "tertiary",
-                                          "secondary", "primary", "ramp",    "trunk", "motorway"};
-    size_t at = 1;
-    assert_int_equal(style->layer_count, 1 + 3 * 2 * 10 + 1 + 4); /* and what is drawn plainly, and names */
+    static const char *const ids[] = {
+        "background",    "tunnel-casing",      "tunnel-fill",       "ground-path",   "ground-casing",
+        "ground-fill",   "bridge-path-edge",   "bridge-path-bed",   "bridge-path",   "bridge-casing",
+        "bridge-fill",   "bridge-2-path-edge", "bridge-2-path-bed", "bridge-2-path", "bridge-2-casing",
+        "bridge-2-fill", "bridge-3-path-edge", "bridge-3-path-bed", "bridge-3-path", "bridge-3-casing",
+        "bridge-3-fill"};
+    enum { COUNT = sizeof ids / sizeof *ids };
+    assert_int_equal(style->layer_count, COUNT + 1 + 4); /* and what is drawn plainly, and names */
     assert_int_equal(style->layers[0].kind, CAMBER_LAYER_BACKGROUND);
-    for (size_t l = 0; l < 3; l++) {
-        for (size_t p = 0; p < 2; p++) {
-            for (size_t i = 0; i < 10; i++, at++) {
-                char id[64];
-                snprintf(id, sizeof id, "%s-%s-%s", levels[l], classes[i], parts[p]);
-                assert_string_equal(style->layers[at].id, id);
-                assert_int_equal(paint_of(style, id, 14.0).join, CAMBER_JOIN_ROUND);
-                assert_int_equal(paint_of(style, id, 14.0).cap, l == 2 && p == 0 ? CAMBER_CAP_BUTT : CAMBER_CAP_ROUND);
-                if (p == 0) {
-                    const camber_style_layer *casing = &style->layers[at], *fill = &style->layers[at + 10];
-                    assert_string_equal(casing->filter_key, fill->filter_key);
-                    for (double zoom = 0.0; zoom <= 24.0; zoom += 0.25)
-                        assert_true(paint_of(style, casing->id, zoom).width >
-                                    paint_of(style, fill->id, zoom).width + 0.05);
-                }
-            }
-        }
+    for (size_t i = 0; i < COUNT; i++) {
+        assert_string_equal(style->layers[i].id, ids[i]);
+        if (!strstr(ids[i], "-casing"))
+            continue;
+        const camber_style_layer *casing = &style->layers[i], *fill = casing + 1;
+        assert_string_equal(casing->filter_key, fill->filter_key);
+        const feature road = {.highway = "residential"};
+        const camber_layer_paint paint = paint_of(style, casing->id, 14.0, &road);
+        assert_int_equal(paint.join, CAMBER_JOIN_ROUND);
+        assert_int_equal(paint.cap, strncmp(ids[i], "bridge", 6) == 0 ? CAMBER_CAP_BUTT : CAMBER_CAP_ROUND);
+        assert_int_equal(paint_of(style, fill->id, 14.0, &road).cap, CAMBER_CAP_ROUND);
+        for (double zoom = 14.0; zoom <= 24.0; zoom += 0.25)
+            assert_true(paint_of(style, casing->id, zoom, &road).width >
+                        paint_of(style, fill->id, zoom, &road).width + 0.5);
     }
 }
 
-/* Wider with zoom, and wider by class. */
+/* Wider with zoom, and wider by class; minor classes are drawn first. */
 static void check_widths(const camber_style *style) {
-    static const char *const ranks[] = {"ground-path-fill",     "ground-service-fill",   "ground-minor-fill",
-                                        "ground-tertiary-fill", "ground-secondary-fill", "ground-primary-fill",
-                                        "ground-motorway-fill"};
+    static const char *const ranks[] = {"service", "residential", "tertiary", "secondary",
+                                        "primary", "trunk",       "motorway"};
     for (double zoom = 4.0; zoom <= 22.0; zoom += 0.25) {
         for (size_t i = 0; i < sizeof ranks / sizeof *ranks; i++) {
-            const double width = paint_of(style, ranks[i], zoom).width;
-            assert_true(zoom >= 22.0 || paint_of(style, ranks[i], zoom + 0.25).width > width);
-            assert_true(i == 0 || width >= paint_of(style, ranks[i - 1], zoom).width);
+            const feature road = {.highway = ranks[i]}, lesser = {.highway = ranks[i ? i - 1 : 0]};
+            const camber_layer_paint paint = paint_of(style, "ground-fill", zoom, &road);
+            assert_true(zoom >= 22.0 || paint_of(style, "ground-fill", zoom + 0.25, &road).width >= paint.width);
+            const camber_layer_paint below = paint_of(style, "ground-fill", zoom, &lesser);
+            assert_true(paint.width >= below.width && (i == 0 || paint.sort_key > below.sort_key));
         }
     }
 }
@@ -272,6 +294,7 @@ static void test_roads(void **state) {
         check_order(f.style);
         check_widths(f.style);
         check_roads(f.style);
+        check_generalization(f.style);
         const camber_color paper = camber_style_layer_paint(&f.style->layers[0], 12.0, NULL).color;
         assert_true(paper.a > 0.99f && (paper.g > 0.5f) == (which == CAMBER_THEME_LIGHT));
         teardown(&f);
@@ -328,18 +351,26 @@ static const char *drawn_by(const camber_style *style, camber_layer_kind kind, c
     return ids;
 }
 
-/* The last layers of the city are the style of roads, to the byte, but for what both draw plainly: where there is
- * nothing else the pictures are the same, too. */
+/* The city has all layers of the style of roads, to the byte and in their order, and rails between them. */
 static void check_city_roads(camber_theme theme) {
-    static const char first[] = ",\n    {\"id\": \"tunnel-path-casing\"";
+    static const char begin[] = ",\n    {\"id\": \"";
     size_t size_bytes;
-    const char *city = strstr(camber_style_get_text("city", theme, &size_bytes), first);
-    const char *roads = strstr(camber_style_get_text("roads", theme, &size_bytes), first);
+    const char *city = strstr(camber_style_get_text("city", theme, &size_bytes), ",\n    {\"id\": \"tunnel-casing\"");
+    const char *roads = strstr(camber_style_get_text("roads", theme, &size_bytes), ",\n    {\"id\": \"tunnel-casing\"");
+    size_t count = 0;
     assert_non_null(city);
     assert_non_null(roads);
-    const char *end = strstr(roads, ",\n    {\"id\": \"plain-line\"");
-    assert_non_null(end);
-    assert_int_equal(strncmp(city, roads, (size_t)(end - roads)), 0);
+    while (strncmp(roads, ",\n    {\"id\": \"plain-line\"", 24) != 0) {
+        const char *end = strstr(roads + 1, begin);
+        assert_non_null(end);
+        while (strncmp(city, roads, (size_t)(end - roads)) != 0) {
+            city = strstr(city + 1, begin);
+            assert_non_null(city);
+        }
+        roads = end;
+        count++;
+    }
+    assert_int_equal(count, 20);
 }
 
 static void check_city(const camber_style *style) {
@@ -412,48 +443,65 @@ static void check_city(const camber_style *style) {
         {"", "waterway=stream tunnel=culvert", ""},
         {"waterway", "class=river", "tiles-waterway-river"},
         {"waterway", "class=river brunnel=tunnel", ""},
-        {"", "railway=rail", "rail"},
+        {"", "railway=rail", "rail rail-ties"},
+        {"", "railway=tram bridge=yes", "bridge-rail-edge bridge-rail-bed bridge-rail bridge-rail-ties"},
         {"", "railway=abandoned", ""},
-        {"transportation", "class=rail", "tiles-transportation-rail"},
-        {"", "highway=primary", "ground-primary-casing ground-primary-fill"},
-        {"transportation", "class=primary", "tiles-transportation-casing tiles-transportation-road"},
-        {"transportation", "class=minor brunnel=bridge",
-         "tiles-transportation-bridge-casing tiles-transportation-bridge"},
-        {"transportation", "class=path", "tiles-transportation-path"},
-        {"transportation", "class=residential", ""},
+        {"transportation", "class=rail", "tiles-transportation-rail tiles-transportation-rail-ties"},
+        {"", "highway=primary", "ground-casing ground-fill"},
+        {"transportation", "class=primary", "tiles-transportation-ground-casing tiles-transportation-ground-fill"},
+        {"transportation", "class=minor brunnel=bridge layer=2",
+         "tiles-transportation-bridge-2-casing tiles-transportation-bridge-2-fill"},
+        {"transportation", "class=path", "tiles-transportation-ground-path"},
+        {"transportation", "class=path subclass=steps", "tiles-transportation-ground-path"},
+        {"transportation", "class=ferry", "tiles-transportation-ferry-line"},
+        {"transportation", "class=primary_construction", "tiles-transportation-works-line"},
         {"water", "kind=river", "tiles-water-river"},
         {"water", "kind=reef", ""},
-        {"roads", "kind=highway kind_detail=motorway", "tiles-roads-casing tiles-roads-road"},
-        {"roads", "kind=major_road kind_detail=primary_link is_link=true", "tiles-roads-casing tiles-roads-road"},
+        {"roads", "kind=highway kind_detail=motorway", "tiles-roads-ground-casing tiles-roads-ground-fill"},
+        {"roads", "kind=major_road kind_detail=primary_link", "tiles-roads-ground-casing tiles-roads-ground-fill"},
         {"roads", "kind=minor_road kind_detail=residential is_bridge=true",
-         "tiles-roads-bridge-casing tiles-roads-bridge"},
-        {"roads", "kind=minor_road kind_detail=service is_tunnel=true", "tiles-roads-tunnel-casing tiles-roads-tunnel"},
-        {"roads", "kind=path kind_detail=sidewalk", "tiles-roads-path"},
-        {"roads", "kind=path kind_detail=track", "tiles-roads-path"},
-        {"roads", "kind=path kind_detail=pier", ""},
-        {"roads", "kind=rail kind_detail=tram", "tiles-roads-rail"},
+         "tiles-roads-bridge-casing tiles-roads-bridge-fill"},
+        {"roads", "kind=minor_road kind_detail=service is_tunnel=true",
+         "tiles-roads-tunnel-casing tiles-roads-tunnel-fill"},
+        {"roads", "kind=path kind_detail=sidewalk", "tiles-roads-ground-path"},
+        {"roads", "kind=path kind_detail=track", "tiles-roads-ground-path"},
+        {"roads", "kind=path kind_detail=pier", "tiles-roads-pier-line"},
+        {"roads", "kind=rail kind_detail=tram", "tiles-roads-rail tiles-roads-rail-ties"},
         {"roads", "kind=rail kind_detail=subway is_tunnel=true", ""},
-        {"roads", "kind=ferry", ""},
+        {"roads", "kind=ferry", "tiles-roads-ferry-line"},
         {"physical_line", "pmap:kind=stream waterway=stream", "tiles-physical_line-river"},
         {"physical_line", "pmap:kind=stream waterway=stream pmap:level=-1", ""},
         {"physical_line", "pmap:kind=cliff natural=cliff", ""},
         {"roads", "pmap:kind=medium_road pmap:kind_detail=tertiary pmap:level=0",
-         "tiles-roads-casing tiles-roads-road"},
-        {"roads", "pmap:kind=highway pmap:kind_detail=motorway_link pmap:link=1 pmap:level=1",
-         "tiles-roads-bridge-casing tiles-roads-bridge"},
+         "tiles-roads-ground-casing tiles-roads-ground-fill"},
+        {"roads", "pmap:kind=highway pmap:kind_detail=motorway_link pmap:level=1",
+         "tiles-roads-bridge-casing tiles-roads-bridge-fill"},
         {"roads", "pmap:kind=major_road pmap:kind_detail=trunk pmap:level=-1",
-         "tiles-roads-tunnel-casing tiles-roads-tunnel"},
-        {"transit", "pmap:kind=rail pmap:kind_detail=rail railway=rail pmap:level=1", "tiles-transit-rail"},
+         "tiles-roads-tunnel-casing tiles-roads-tunnel-fill"},
+        {"transit", "pmap:kind=rail pmap:kind_detail=rail railway=rail pmap:level=1",
+         "tiles-transit-bridge-rail-edge tiles-transit-bridge-rail-bed tiles-transit-bridge-rail "
+         "tiles-transit-bridge-rail-ties"},
         {"transit", "pmap:kind=rail pmap:kind_detail=subway railway=subway pmap:level=-1", ""},
         {"water_lines", "kind=canal", "tiles-water_lines-river"},
         {"water_lines", "kind=ditch tunnel=true", ""},
-        {"streets", "kind=trunk link=true", "tiles-streets-casing tiles-streets-road"},
-        {"streets", "kind=living_street bridge=true", "tiles-streets-bridge-casing tiles-streets-bridge"},
-        {"streets", "kind=primary bridge=true tunnel=true", "tiles-streets-tunnel-casing tiles-streets-tunnel"},
-        {"streets", "kind=footway", "tiles-streets-path"},
-        {"streets", "kind=narrow_gauge", "tiles-streets-rail"},
+        {"streets", "kind=trunk link=true", "tiles-streets-ground-casing tiles-streets-ground-fill"},
+        {"streets", "kind=living_street bridge=true", "tiles-streets-bridge-casing tiles-streets-bridge-fill"},
+        {"streets", "kind=primary bridge=true tunnel=true", "tiles-streets-tunnel-casing tiles-streets-tunnel-fill"},
+        {"streets", "kind=footway", "tiles-streets-ground-path"},
+        {"streets", "kind=narrow_gauge", "tiles-streets-rail tiles-streets-rail-ties"},
         {"streets", "kind=subway tunnel=true", ""},
-        {"streets", "kind=runway", ""},
+        {"streets", "kind=runway", "tiles-streets-runway-line"},
+        {"ferries", "kind=ferry", "tiles-ferries-ferry-line"},
+        {"boundary", "admin_level=2", "tiles-boundary-border"},
+        {"boundary", "admin_level=2 maritime=1", ""},
+        {"boundaries", "kind=region", "tiles-boundaries-border"},
+        {"", "boundary=administrative admin_level=6", "border"},
+        {"", "boundary=administrative admin_level=10", ""},
+        {"", "route=ferry", "ferry-line"},
+        {"", "man_made=pier", "pier-line"},
+        {"", "aeroway=runway", "runway-line"},
+        {"", "aerialway=gondola", "lift-line lift-line-ties"},
+        {"", "barrier=hedge", "hedge-line"},
         {"transportation_name", "class=primary", ""},
         {"water_name", "class=lake", ""},
         {"", "building=yes", ""},
@@ -476,9 +524,9 @@ static void test_builtin(void **state) {
         assert_string_equal(camber_style_list(0), "city");
         assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
-        assert_true(f.style->schema.wants_areas);
-        assert_false(f.style->schema.wants_polygons || f.style->schema.directed ||
-                     f.style->schema.wants_all_properties);
+        /* Polygons are lines, too, because buildings have an edge; dashes have a direction. */
+        assert_true(f.style->schema.wants_areas && f.style->schema.wants_polygons && f.style->schema.directed);
+        assert_false(f.style->schema.wants_all_properties);
         check_city(f.style);
         check_city_roads(which);
         teardown(&f);
@@ -724,7 +772,7 @@ static void test_plain(void **state) {
     }
     setup(&f);
     assert_int_equal(camber_style_create_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
-    assert_int_equal(camber_style_get_effects(f.style, (double)NAN), 0);
+    assert_int_equal(camber_style_get_effects(f.style, (double)NAN), CAMBER_STYLE_EFFECT_DASH);
     teardown(&f);
 }
 
@@ -782,6 +830,48 @@ static void test_warnings(void **state) {
                                    "without it");
     assert_int_equal(camber_style_layer_paint(f.style->layers, 9.9, NULL).cap, CAMBER_CAP_BUTT);
     assert_int_equal(camber_style_layer_paint(f.style->layers, 10.0, NULL).cap, CAMBER_CAP_ROUND);
+    teardown(&f);
+}
+
+/* A layer with an operator of the specification that is not supported is left out; the others are drawn. */
+static void test_left_out(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    assert_int_equal(
+        parse(&f,
+              "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"symbol\", \"filter\": [\"all\", [\"within\", "
+              "{\"type\": \"Polygon\", \"coordinates\": []}], [\"within\", {}]], \"layout\": {\"text-field\": \"x\"}},"
+              "{\"id\": \"b\", \"type\": \"line\", \"paint\": {\"line-width\": [\"distance\", {}]}},"
+              "{\"id\": \"c\", \"type\": \"symbol\", \"layout\": {\"text-field\": [\"resolved-locale\", "
+              "[\"collator\", {}]]}}, {\"id\": \"d\", \"type\": \"line\", \"filter\": [\"==\", \"class\", "
+              "\"within\"]}]}"),
+        CAMBER_OK);
+    assert_int_equal(f.error_count, 0);
+    assert_int_equal(f.warning_count, 3);
+    assert_string_equal(f.warning,
+                        "roads.json: /layers/2/layout/text-field/0: \"resolved-locale\" is not supported, so the "
+                        "layer is left out");
+    assert_int_equal(f.style->layer_count, 1);
+    assert_string_equal(f.style->layers[0].id, "d");
+    teardown(&f);
+}
+
+/* Features whose label the zoom decides are read, whatever the zoom of the view that they are read for. */
+static void test_filter_by_zoom(void **state) {
+    (void)state;
+    const camber_feature_view point = {.geometry_type = "Point"};
+    fixture f;
+    setup(&f);
+    assert_int_equal(
+        parse(&f, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"symbol\", \"filter\": [\">=\", "
+                  "[\"zoom\"], 5], \"layout\": {\"text-field\": \"x\"}}, {\"id\": \"b\", \"type\": \"symbol\", "
+                  "\"filter\": [\"==\", [\"geometry-type\"], \"Polygon\"]}]}"),
+        CAMBER_OK);
+    assert_true(camber_style_layer_takes(f.style->layers, &point));
+    assert_false(camber_style_layer_matches(f.style->layers, 4.9, &point));
+    assert_true(camber_style_layer_matches(f.style->layers, 5.0, &point));
+    assert_false(camber_style_layer_takes(f.style->layers + 1, &point));
     teardown(&f);
 }
 
@@ -1173,13 +1263,13 @@ static void test_sets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),    cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),     cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes), cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_states),      cmocka_unit_test(test_reference),  cmocka_unit_test(test_wrong),
-        cmocka_unit_test(test_nesting),     cmocka_unit_test(test_many),       cmocka_unit_test(test_many_names),
-        cmocka_unit_test(test_damage),      cmocka_unit_test(test_memory),     cmocka_unit_test(test_long_pointers),
-        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),        cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),         cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes),     cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_left_out),    cmocka_unit_test(test_filter_by_zoom), cmocka_unit_test(test_states),
+        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),          cmocka_unit_test(test_nesting),
+        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),     cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),  cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -415,6 +415,16 @@ static double area_of(const camber_outline *outline) {
     return area;
 }
 
+static double perimeter_of(const camber_outline *outline) {
+    double length = 0.0;
+    for (size_t r = 0; r < outline->ring_count; r++)
+        for (uint32_t i = outline->offsets[r], end = outline->offsets[r + 1], j = end - 1; i < end; j = i++) {
+            const float *a = outline->points + 2 * (size_t)j, *b = outline->points + 2 * (size_t)i;
+            length += hypot((double)a[0] - (double)b[0], (double)a[1] - (double)b[1]);
+        }
+    return length;
+}
+
 static void check_outlines(maker *m, const char *const *fonts, double o_area) {
     camber_text *text = shape(m, "oi H", fonts, (camber_text_desc){0});
     static const size_t rings[] = {2, 2, 0, 1};
@@ -433,6 +443,42 @@ static void check_outlines(maker *m, const char *const *fonts, double o_area) {
             assert_true(fabsf(outline.bottom) < 0.01f && outline.top < -0.6f && outline.top > -0.8f);
     }
     camber_text_destroy(text);
+}
+
+/* Below 20 px strokes are 0.2 px * (1 - size / 20) wider, in whatever order sizes are asked for. */
+static void test_small_outlines(void **state) {
+    (void)state;
+    static const struct {
+        float size_px, wider_px;
+    } sizes[] = {{10.0f, 0.1f}, {20.0f, 0.0f}, {12.0f, 0.08f}, {48.0f, 0.0f}, {16.0f, 0.04f}, {10.0f, 0.1f}};
+    maker m;
+    make_shipped(&m);
+    camber_text *text = shape(&m, "lo", noto_sans, (camber_text_desc){0});
+    const uint32_t l = text->glyphs[0].glyph, o = text->glyphs[1].glyph;
+    camber_outline plain, sized, ring;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        const float size = sizes[i].size_px;
+        assert_int_equal(camber_fonts_get_outline(m.fonts, l, 0.0f, &plain), CAMBER_OK);
+        assert_int_equal(camber_fonts_get_sized_outline(m.fonts, l, size, &sized), CAMBER_OK);
+        const float wider = (sized.right - sized.left) - (plain.right - plain.left);
+        const float higher = (sized.bottom - sized.top) - (plain.bottom - plain.top);
+        assert_true(fabsf(wider * size - sizes[i].wider_px) < 0.01f && fabsf(higher - wider) < 1e-5f);
+        assert_true(fabsf(sized.left + sized.right - plain.left - plain.right) < 1e-5f);
+        /* The hole becomes smaller as the outside becomes larger. */
+        assert_int_equal(camber_fonts_get_outline(m.fonts, o, 1.0f / 32.0f / size, &plain), CAMBER_OK);
+        assert_int_equal(camber_fonts_get_sized_outline(m.fonts, o, size, &ring), CAMBER_OK);
+        assert_int_equal(ring.ring_count, 2);
+        assert_true(sizes[i].wider_px > 0.0f || ring.points == plain.points);
+        const double widened = (area_of(&ring) - area_of(&plain)) * (double)size;
+        assert_true(fabs(widened - 0.5 * perimeter_of(&plain) * (double)sizes[i].wider_px) < 0.02);
+    }
+    const float tiny[] = {1e-30f, 1e-3f, 1.0f, 1e30f};
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(camber_fonts_get_sized_outline(m.fonts, o, tiny[i], &sized), CAMBER_OK);
+        assert_true(sized.left > -0.1f && sized.right < 0.7f);
+    }
+    camber_text_destroy(text);
+    unmake(&m);
 }
 
 static void test_outlines(void **state) {
@@ -495,6 +541,9 @@ static void test_ranges(void **state) {
     assert_int_equal(camber_fonts_get_outline(m.fonts, text->glyphs[0].glyph, 0.0f, &outline), CAMBER_OK);
     assert_int_equal(outline.ring_count, 2);
     assert_true(area_of(&outline) > 0.1 && area_of(&outline) < 0.25);
+    camber_outline small;
+    assert_int_equal(camber_fonts_get_sized_outline(m.fonts, text->glyphs[0].glyph, 10.0f, &small), CAMBER_OK);
+    assert_ptr_equal(small.points, outline.points); /* distances are drawn as they are */
     assert_int_equal(camber_fonts_get_outline(m.fonts, text->glyphs[1].glyph, 0.0f, &outline), CAMBER_OK);
     assert_true(fabsf(outline.bottom) < 0.01f);
     camber_text_destroy(text);
@@ -713,6 +762,34 @@ static void test_pictograph(void **state) {
     unmake(&m);
 }
 
+/* A script that no font has is told once, with the package that has it. */
+static void test_missing_scripts(void **state) {
+    (void)state;
+    static const char *const scripts[][3] = {
+        {"\xd8\xa7\xd9\x84", "Arabic", "fonts-noto-core"},
+        {"\xd7\xaa", "Hebrew", "fonts-noto-core"},
+        {"\xe0\xa4\xa6", "Devanagari", "fonts-noto-core"},
+        {"\xe0\xb8\x81", "Thai", "fonts-noto-core"},
+        {"\xe1\x9e\x97", "Khmer", "fonts-noto-core"},
+        {"\xe1\x80\x9b", "Myanmar", "fonts-noto-core"},
+        {"\xe5\x8c\x97\xe3\x82\xbf\xe3\x83\xbc\xe3\x81\x8c\xec\x84\x9c", "Chinese, Japanese and Korean",
+         "fonts-noto-cjk"},
+        {"\xf0\x9f\x98\x80", "pictograph", "fonts-symbola"},
+        {"\xf0\x90\x8e\xa0", "Xpeo", "fonts-noto-core"}, /* Old Persian */
+    };
+    maker m;
+    make_shipped(&m);
+    for (size_t i = 0; i < sizeof scripts / sizeof *scripts; i++)
+        for (int round = 0; round < 2; round++) {
+            camber_text *text = shape(&m, scripts[i][0], noto_sans, (camber_text_desc){0});
+            assert_int_equal(m.h.warnings, i + 1);
+            assert_non_null(strstr(m.h.warning, scripts[i][1]));
+            assert_non_null(strstr(m.h.warning, scripts[i][2]));
+            camber_text_destroy(text);
+        }
+    unmake(&m);
+}
+
 /* Marks that a letter's font does not have take the letter with them. */
 static void test_marks(void **state) {
     (void)state;
@@ -897,6 +974,7 @@ int main(void) {
         cmocka_unit_test(test_anchors),
         cmocka_unit_test(test_spacing_and_scale),
         cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_small_outlines),
         cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_thin_strokes),
         cmocka_unit_test(test_arabic_ranges),
@@ -906,6 +984,7 @@ int main(void) {
         cmocka_unit_test(test_missing_font),
         cmocka_unit_test(test_folder),
         cmocka_unit_test(test_pictograph),
+        cmocka_unit_test(test_missing_scripts),
         cmocka_unit_test(test_marks),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_long),

@@ -152,14 +152,15 @@ static camber_status open_cl(camber_device *device, const camber_gl_handles *gl)
     return device->lanes ? CAMBER_OK : find_lanes(device);
 }
 
-static camber_status open_device(camber_device *device, const camber_found_device *found, const camber_gl_handles *gl) {
+static camber_status open_device(camber_device *device, const camber_found_device *found,
+                                 const camber_device_desc *desc) {
     camber_opencl_device *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->platform = found->platform;
     made->id = found->id;
     device->native = made;
-    return open_cl(device, gl);
+    return open_cl(device, &desc->gl);
 }
 
 static void close_device(camber_device *device) {

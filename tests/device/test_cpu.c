@@ -1,0 +1,199 @@
+/* The back end cpu: its pool of threads, and pictures that are the same on every level of the processor, with any
+ * number of threads, and in OpenCL. pthread_create is wrapped, and refuses from some call on. */
+#include "core.h"
+
+#include "gpu/cpu/pool.h"
+
+#include <errno.h>
+#include <fenv.h>
+#include <pthread.h>
+
+static int allowed = 1000;
+
+int __real_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
+int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user) {
+    return allowed-- > 0 ? __real_pthread_create(id, how, work, user) : EAGAIN;
+}
+
+/* ---- The pool ---- */
+
+enum { ITEMS_MAX = 5000 };
+
+typedef struct calls {
+    size_t count;
+    atomic_int of[ITEMS_MAX];
+    atomic_int wrong; /* calls with another count, or with the caller's rounding */
+} calls;
+
+static void count_items(const void *args, size_t first, size_t end, size_t count) {
+    calls *c;
+    memcpy(&c, args, sizeof c);
+    atomic_fetch_add(&c->wrong, count != c->count || end > count || first >= end || fegetround() != FE_TONEAREST);
+    for (size_t i = first; i < end; i++)
+        atomic_fetch_add(&c->of[i], 1);
+}
+
+static void run_pool(size_t threads, int started) {
+    static calls c;
+    static const size_t counts[] = {1, 2, 3, 7, 64, ITEMS_MAX, 5, 1, ITEMS_MAX};
+    host h;
+    camber_context *context = host_context(&h);
+    camber_cpu_pool *pool = NULL;
+    calls *args = &c;
+    assert_int_equal(camber_cpu_pool_create(context, threads, &pool), CAMBER_OK);
+    allowed = started;
+    for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
+        memset(&c, 0, sizeof c);
+        c.count = counts[n];
+        fesetround(FE_UPWARD);
+        camber_cpu_pool_run(pool, &(camber_cpu_work){count_items, &args, counts[n]});
+        assert_int_equal(fegetround(), FE_UPWARD);
+        fesetround(FE_TONEAREST);
+        assert_int_equal(c.wrong, 0);
+        for (size_t i = 0; i < ITEMS_MAX; i++)
+            assert_int_equal(c.of[i], i < counts[n]);
+    }
+    camber_cpu_pool_destroy(pool);
+    allowed = 1000;
+    host_done(&h, context);
+}
+
+static void test_pool(void **state) {
+    (void)state;
+    run_pool(1, 1000);
+    run_pool(2, 1000);
+    run_pool(9, 1000);
+    run_pool(9, 3);
+    run_pool(9, 0);
+    camber_cpu_pool_destroy(NULL);
+}
+
+/* ---- Pictures ---- */
+
+enum { SIDE_PX = 160, PICTURE_BYTES = 4 * SIDE_PX * SIDE_PX };
+
+static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    memcpy((uint8_t *)user + (size_t)4 * SIDE_PX * first_row, rgba, (size_t)4 * SIDE_PX * row_count);
+    return true;
+}
+
+/* Draws lines and dashes, which are translucent and cross each other. */
+static camber_status draw(camber_context *context, camber_device *device, uint8_t *rgba) {
+    static const float points[] = {8, 8, 152, 14, 20, 150, 155, 155, 4, 120, 160, 4, 80, 80, 81, 82, 150, 60};
+    static const uint32_t offsets[] = {0, 4, 6, 9}, rows[] = {0, 1, 1};
+    static const float lengths[] = {7, 3};
+    const camber_dash dash = {lengths, 2};
+    const camber_polylines_desc lines = {
+        .points = points, .point_count = 9, .offsets = offsets, .polyline_count = 3, .rows = rows};
+    const camber_stroke strokes[] = {{.width_px = 21, .join = CAMBER_JOIN_ROUND, .cap = CAMBER_CAP_ROUND},
+                                     {.width_px = 3, .join = CAMBER_JOIN_MITER}};
+    const camber_paint paints[] = {{.width_px = 21, .color = {0.1f, 0.2f, 0.4f, 0.5f}},
+                                   {.width_px = 3, .color = {0.5f, 0.2f, 0.1f, 0.9f}, .dash = &dash}};
+    const camber_tessellation_desc tessellation = {.strokes = strokes, .stroke_count = 2, .has_arc_length = true};
+    camber_pass pass = {.paints = paints, .paint_count = 2};
+    camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
+    camber_polylines *polylines = NULL;
+    camber_renderer *renderer = NULL;
+    camber_status status = camber_polylines_create(context, &lines, &polylines);
+    if (status == CAMBER_OK)
+        status = camber_renderer_create(device, NULL, NULL, &renderer);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(device, renderer, &pass.mesh);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate(pass.mesh, polylines, &tessellation);
+    if (status == CAMBER_OK)
+        status = camber_renderer_render(renderer, &frame, take_rows, rgba, NULL);
+    camber_mesh_destroy(pass.mesh);
+    camber_renderer_destroy(renderer);
+    camber_polylines_destroy(polylines);
+    return status;
+}
+
+static camber_status draw_on(camber_context *context, const camber_device_desc *desc, uint8_t *rgba) {
+    camber_device *device = NULL;
+    camber_status status = camber_device_create(context, desc, &device);
+    if (status == CAMBER_OK)
+        status = draw(context, device, rgba);
+    camber_device_destroy(device);
+    return status;
+}
+
+/* Draws on a level, or, if level is NULL, in OpenCL. Returns whether it is here. */
+static bool draw_level(const char *level, uint32_t threads, uint8_t *rgba) {
+    host h;
+    camber_context *context = host_context(&h);
+    const camber_device_info *info = NULL;
+    const char *match = level ? "camber" : "opencl";
+    setenv("CAMBER_CPU", level ? level : "none", 1);
+    assert_int_equal(camber_device_list(context, match, 0, &info), CAMBER_OK);
+    const bool is_here = info != NULL;
+    if (is_here && level) {
+        assert_non_null(strstr(info->name, level));
+        assert_true(info->fixed_kernels);
+    }
+    if (is_here)
+        assert_int_equal(draw_on(context, &(camber_device_desc){.match = match, .threads = threads}, rgba), CAMBER_OK);
+    unsetenv("CAMBER_CPU");
+    host_done(&h, context);
+    return is_here;
+}
+
+static void test_levels(void **state) {
+    (void)state;
+    static const char *const levels[] = {"x86-64-v2", "x86-64-v3", "x86-64-v4", "aarch64", NULL};
+    static const uint32_t threads[] = {1, 2, 5};
+    static uint8_t first[PICTURE_BYTES], other[PICTURE_BYTES];
+    size_t count = 0, lit = 0;
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; i++)
+        for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
+            uint8_t *rgba = count ? other : first;
+            memset(rgba, 1, PICTURE_BYTES);
+            if (!draw_level(levels[i], threads[k], rgba))
+                break;
+            assert_memory_equal(rgba, first, PICTURE_BYTES);
+            count++;
+        }
+    for (size_t i = 3; i < PICTURE_BYTES; i += 4)
+        lit += first[i] > 1;
+    assert_true(count >= 3);
+    assert_in_range(lit, PICTURE_BYTES / 4 / 10, PICTURE_BYTES / 4);
+}
+
+/* ---- Failures ---- */
+
+static void test_fixed_kernels(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    camber_device *device = NULL;
+    const camber_device_desc descs[] = {{.match = "camber", .work_group_size = 64}, {.match = "camber", .lanes = 1}};
+    for (size_t i = 0; i < 2; i++) {
+        assert_int_equal(camber_device_create(context, descs + i, &device), CAMBER_ERROR_DEVICE);
+        assert_null(device);
+        assert_story(&h, "; ask for 0 of both");
+    }
+    assert_int_equal(camber_device_create(context, &(camber_device_desc){.match = "camber"}, &device), CAMBER_OK);
+    assert_true(camber_device_get_info(device).fixed_kernels);
+    camber_device_destroy(device);
+    host_done(&h, context);
+}
+
+static camber_status attempt(camber_context *context, void *user) {
+    return draw_on(context, &(camber_device_desc){.match = "camber", .threads = 2}, user);
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    static uint8_t rgba[PICTURE_BYTES];
+    host h;
+    camber_context *context = host_context(&h);
+    each_allocation_fails(&h, attempt, context, rgba);
+    host_done(&h, context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pool), cmocka_unit_test(test_levels),
+                                       cmocka_unit_test(test_fixed_kernels), cmocka_unit_test(test_memory)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

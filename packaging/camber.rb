@@ -10,6 +10,7 @@ class Camber < Formula
   depends_on "ninja" => :build
   depends_on "opencl-headers" => :build
   depends_on "pkgconf" => :build
+  depends_on "cairo"
   depends_on "fontconfig"
   depends_on "fribidi"
   depends_on "gdal"

@@ -64,6 +64,7 @@ typedef struct camber_png_desc {
     const camber_png_text *texts; /* text_count of them. NULL: none */
     size_t text_count;
     int compression; /* DEFLATE's level, 1 to 9. 0: 1 */
+    double dpi;      /* px per inch of paper, which the file tells (pHYs). 0: it tells nothing */
 } camber_png_desc;
 
 typedef struct camber_png camber_png;
@@ -108,6 +109,7 @@ typedef struct camber_encoder_desc {
     int quality;                  /* WebP: 1 to 100; 100 is lossless. 0: 80 */
     const camber_png_text *texts; /* PNG: text_count of them. NULL: none */
     size_t text_count;
+    double dpi; /* PNG: px per inch of paper, which the file tells (pHYs). 0: it tells nothing */
 } camber_encoder_desc;
 
 enum { CAMBER_PIXELS_MOST = 1 << 28 };

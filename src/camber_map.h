@@ -258,6 +258,7 @@ typedef struct camber_view_desc {
     double pitch_deg;                /* 0 to 85, as in camber_frame. FIT and BBOX choose the view as for a pitch of 0 */
     uint32_t width, height;          /* CSS px. 0: 1024 */
     double ratio;                    /* device px per CSS px. 0: 1 */
+    bool cover;                      /* FIT and BBOX fill the picture, and cut off what does not fit on it */
 } camber_view_desc;
 
 /* Returns the view that the style's document asks for: centre, zoom, bearing and pitch, at most 85. Values that the

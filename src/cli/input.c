@@ -291,11 +291,36 @@ static void say_times(const camber_input *input) {
                           times.merge_ms, times.weigh_ms);
 }
 
+/* Makes the sheet that the options ask for, and the view that fits into it. */
+static int open_page(camber_input *input) {
+    const camber_options *options = input->session->options;
+    if (!(options->paper_width_mm > 0.0))
+        return CAMBER_EXIT_DONE;
+    const camber_fonts_desc fonts = {.folders = options->fonts, .folder_count = options->font_count};
+    const camber_page_desc desc = {.width_mm = options->paper_width_mm,
+                                   .height_mm = options->paper_height_mm,
+                                   .margin_mm = options->margin_mm,
+                                   .dpi = options->dpi,
+                                   .ratio = options->view.ratio,
+                                   .title = options->title,
+                                   .subtitle = options->subtitle,
+                                   .scale_bar = options->scale_bar,
+                                   .north_arrow = options->north_arrow,
+                                   .grid = options->grid,
+                                   .fonts = &fonts};
+    const camber_status status = camber_page_create(input->session->context, &desc, &input->page);
+    if (status == CAMBER_OK)
+        camber_page_set_view(input->page, &input->view);
+    return camber_report_status(input->session->report, status);
+}
+
 static int open_map(camber_input *input) {
     camber_session *session = input->session;
     const double start_ms = camber_now_ms();
     bool done = false;
-    int status = open_style(input);
+    int status = open_page(input);
+    if (status == CAMBER_EXIT_DONE)
+        status = open_style(input);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         take_view(input);
     if (status == CAMBER_EXIT_DONE && session->opens_beside)
@@ -318,6 +343,8 @@ static int open_map(camber_input *input) {
         return status;
     const char *asked = session->options->attribution;
     input->attribution = asked ? (*asked ? asked : NULL) : camber_features_get_attribution(input->features);
+    if (input->page && camber_page_set_credit(input->page, input->attribution) != CAMBER_OK)
+        return CAMBER_EXIT_INTERNAL;
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
@@ -351,9 +378,14 @@ static camber_status project_validated(camber_input *input, camber_scene_desc de
     return project_new(input, &desc);
 }
 
-/* Only one picture of the network is drawn, so its lines are counted and then freed. */
+/* Only one picture of the network is drawn, so its lines are counted and then freed. A page of vectors is drawn from
+ * the features, which therefore keep their points. */
 static camber_status project_once(camber_input *input, const camber_scene_desc *desc) {
-    camber_status status = camber_scene_create_last(input->features, desc, &input->scene);
+    camber_scene_desc once = *desc;
+    once.use = CAMBER_SCENE_ONE_VIEW;
+    camber_status status = camber_format_is_vector(input->session->options->format)
+                               ? camber_scene_create(input->features, &once, &input->scene)
+                               : camber_scene_create_last(input->features, &once, &input->scene);
     if (status != CAMBER_OK)
         return status;
     status = camber_scene_project(input->scene);
@@ -411,6 +443,7 @@ void camber_input_close(camber_input *input) {
 #ifdef CAMBER_MAP
     camber_scene_destroy(input->scene);
     camber_scene_destroy(input->filled);
+    camber_page_destroy(input->page);
     camber_features_destroy(input->features);
     camber_style_destroy(input->style);
 #endif

@@ -4,6 +4,8 @@
 
 #include "cli/session.h"
 
+#include "camber_print.h"
+
 typedef struct camber_input {
     camber_session *session;
     const char *attribution;       /* from the options, or else from the data; NULL: none */
@@ -23,6 +25,7 @@ typedef struct camber_input {
     const char *base_path; /* the style's paths are relative to this file's folder; NULL: to the working folder */
     camber_features *features;
     camber_scene *scene;
+    camber_page *page;    /* the sheet that is drawn. NULL: none */
     camber_scene *filled; /* validate: the scene with areas, if there are any; scene is then without them. NULL: none */
     camber_polylines_stats drawn; /* render: counts of the lines in the picture, which are freed afterwards */
 } camber_input;

@@ -40,7 +40,13 @@ typedef enum camber_format {
     CAMBER_FORMAT_PNG8,
     CAMBER_FORMAT_WEBP,
     CAMBER_FORMAT_GLB,
+    CAMBER_FORMAT_PDF,
+    CAMBER_FORMAT_SVG,
 } camber_format;
+
+static inline bool camber_format_is_vector(int format) {
+    return format == CAMBER_FORMAT_PDF || format == CAMBER_FORMAT_SVG;
+}
 
 /* Only pictures have an encoding. */
 static inline camber_encoding camber_format_encoding(int format) {
@@ -78,9 +84,16 @@ typedef struct camber_options {
     double simplify_px, width_px, fan_tolerance_px;
     const char *color, *fill; /* colours of features that no rule of a built-in style matches; NULL: the style's own */
     double width;             /* width of such lines, CSS px; 0: the style's own */
-    uint32_t threads;         /* 0: one per core */
-    uint64_t memory_bytes;    /* memory limit of the run, without its libraries; 0: the library's default */
-    uint32_t quality;         /* of WebP, 1 to 100; 0: the library's default */
+    /* Print: */
+    const char *paper; /* a size by its name, or WxHmm */
+    const char *title, *subtitle;
+    bool landscape, scale_bar, north_arrow, grid;
+    double dpi, margin_mm;                  /* NAN: not given */
+    int fit;                                /* 0: contain, 1: cover; -1: not given */
+    double paper_width_mm, paper_height_mm; /* of the sheet, by camber_options_check_page; 0: there is no sheet */
+    uint32_t threads;                       /* 0: one per core */
+    uint64_t memory_bytes; /* memory limit of the run, without its libraries; 0: the library's default */
+    uint32_t quality;      /* of WebP, 1 to 100; 0: the library's default */
     uint32_t runs;
     uint32_t windows; /* number of windows of each picture that are compared with exact coverage */
     const char *only; /* only groups of checks whose name contains this text are run; NULL: all */
@@ -118,6 +131,8 @@ const char *camber_options_tiles_action(const camber_options *options);
 int camber_options_check_serve(camber_options *options, char *message, size_t message_size);
 /* Checks the options of tiles; called by camber_options_check. */
 int camber_options_check_tiles(camber_options *options, char *message, size_t message_size);
+/* Checks the options of print, and sets the sheet, after the format of OUT is known; called by camber_options_check. */
+int camber_options_check_page(camber_options *options, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 
 /* Prints the help for the tool (CAMBER_VERB_NONE) or for a verb. */

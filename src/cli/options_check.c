@@ -19,10 +19,9 @@ static bool ships(const char *style) {
 
 static const struct {
     const char *name, *extension;
-} formats[] = {[CAMBER_FORMAT_PNG] = {"png", ".png"},
-               [CAMBER_FORMAT_PNG8] = {"png8", ".png"},
-               [CAMBER_FORMAT_WEBP] = {"webp", ".webp"},
-               [CAMBER_FORMAT_GLB] = {"glb", ".glb"}};
+} formats[] = {[CAMBER_FORMAT_PNG] = {"png", ".png"},    [CAMBER_FORMAT_PNG8] = {"png8", ".png"},
+               [CAMBER_FORMAT_WEBP] = {"webp", ".webp"}, [CAMBER_FORMAT_GLB] = {"glb", ".glb"},
+               [CAMBER_FORMAT_PDF] = {"pdf", ".pdf"},    [CAMBER_FORMAT_SVG] = {"svg", ".svg"}};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
@@ -34,6 +33,11 @@ static int check_picture(const camber_option_reader *p) {
     const double width = floor(options->view.width * options->view.ratio + 0.5);
     const double height = floor(options->view.height * options->view.ratio + 0.5);
     const char *name = formats[options->format].name;
+    if (camber_format_is_vector(options->format))
+        return options->quality
+                   ? camber_options_refuse(p, "--quality: applies only to WebP, but %s is %s; leave it out",
+                                           options->output, name)
+                   : CAMBER_EXIT_DONE;
     if (!camber_encoding_is_built(encoding))
         return camber_options_refuse(
             p, "%s: this build writes no WebP (CAMBER_WEBP); build it with libwebp, or name it OUT.png",
@@ -56,7 +60,8 @@ static int check_picture(const camber_option_reader *p) {
 /* Determines the format from the extension if --format is not given. If both are given, they must agree. */
 static int check_format(const camber_option_reader *p, bool out) {
     camber_options *options = p->options;
-    const bool glb = options->verb == CAMBER_VERB_TESSELLATE;
+    const bool glb = options->verb == CAMBER_VERB_TESSELLATE, renders = options->verb == CAMBER_VERB_RENDER;
+    const char *pictures = options->verb == CAMBER_VERB_BENCH ? "png, png8 and webp" : "png, png8, webp, pdf and svg";
     int named = -1; /* the format of the extension */
     for (int i = FORMAT_COUNT - 1; i >= 0; i--)
         if (!out && camber_path_ends_with(options->output, formats[i].extension))
@@ -70,19 +75,22 @@ static int check_format(const camber_option_reader *p, bool out) {
         char blame[64];
         camber_path_blame_extension(options->output, blame);
         return camber_options_refuse(p, "%s: %s; camber %s writes %s: name it OUT.%s, or give --format",
-                                     options->output, blame, p->verb, glb ? "glb" : "png, png8 and webp",
-                                     glb ? "glb" : "png");
+                                     options->output, blame, p->verb, glb ? "glb" : pictures, glb ? "glb" : "png");
     }
     const bool wrong = (format == CAMBER_FORMAT_GLB) != glb || (named >= 0 && (named == CAMBER_FORMAT_GLB) != glb);
     if (wrong)
         return camber_options_refuse(p, "%s: %s writes %s; use camber %s to write %s", options->output, p->verb,
-                                     glb ? "glb" : "png, png8 and webp", glb ? "render" : "tessellate",
-                                     glb ? "png, png8 and webp" : "glb");
+                                     glb ? "glb" : pictures, glb ? "render" : "tessellate", glb ? pictures : "glb");
     if (named >= 0 && strcmp(formats[named].extension, formats[format].extension) != 0)
         return camber_options_refuse(
             p, "%s: its extension means %s, but --format is %s; name it OUT%s, or leave out --format", options->output,
             formats[named].name, formats[format].name, formats[format].extension);
     options->format = format;
+    if (camber_format_is_vector(format) && !renders)
+        return camber_options_refuse(p, "%s: camber %s writes %s; use camber render to write %s", options->output,
+                                     p->verb, pictures, formats[format].name);
+    if (renders && camber_options_check_page(options, p->message, p->message_size) != CAMBER_EXIT_DONE)
+        return CAMBER_EXIT_USAGE;
     return glb ? CAMBER_EXIT_DONE : check_picture(p);
 }
 

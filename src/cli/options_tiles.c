@@ -87,6 +87,8 @@ static int check_encoding(const camber_option_reader *p) {
     camber_options *options = p->options;
     if (options->format < 0)
         options->format = CAMBER_FORMAT_PNG;
+    if (camber_format_is_vector(options->format))
+        return camber_options_refuse(p, "--format: tiles are png, png8, webp or glb; give one of them");
     if (options->format == CAMBER_FORMAT_GLB && options->keep_empty)
         return camber_options_refuse(p, "--keep-empty: an empty mesh tile has no background to keep; leave it out");
 #ifndef CAMBER_MESHOPT

@@ -2,6 +2,7 @@
  * Other formats need the whole picture in memory. */
 #include "cli/picture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,15 +42,20 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
     const camber_png_text texts[] = {{"Software", software}, {"Copyright", attribution}};
     const size_t text_count = attribution ? 2 : 1;
     if (options->format == CAMBER_FORMAT_PNG) {
-        const camber_png_desc desc = {
-            .width = w->width, .height = w->height, .opaque = opaque, .texts = texts, .text_count = text_count};
+        const camber_png_desc desc = {.width = w->width,
+                                      .height = w->height,
+                                      .opaque = opaque,
+                                      .texts = texts,
+                                      .text_count = text_count,
+                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
         return camber_png_create(w->context, &desc, camber_output_sink(w->output), &w->png);
     }
     const camber_encoder_desc desc = {.encoding = camber_format_encoding(options->format),
                                       .opaque = opaque,
                                       .quality = (int)options->quality,
                                       .texts = texts,
-                                      .text_count = text_count};
+                                      .text_count = text_count,
+                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
     w->rgba = malloc(4 * (size_t)w->width * w->height);
     return w->rgba ? camber_encoder_create(w->context, &desc, &w->encoder) : CAMBER_ERROR_MEMORY;
 }
@@ -73,23 +79,74 @@ static void end(writer *w) {
     free(w->rgba);
 }
 
+/* ---- Sheets ---- */
+
+#ifdef CAMBER_MAP
+static bool has_page(const camber_input *input) {
+    return input->page != NULL;
+}
+
+static camber_page_info info_of(const camber_input *input) {
+    return camber_page_get_info(input->page);
+}
+
+static camber_status render_page(camber_input *input, camber_mesh *mesh, writer *w, camber_frame_stats *stats) {
+    return camber_page_render(input->page, input->scene, input->session->renderer, mesh, write_rows, w, stats);
+}
+
+int camber_picture_write_page(camber_input *input, camber_mesh *mesh, camber_output *output,
+                              camber_picture_times *times) {
+    camber_session *session = input->session;
+    const double start_ms = camber_now_ms();
+    const camber_page_format format = session->options->format == CAMBER_FORMAT_SVG ? CAMBER_PAGE_SVG : CAMBER_PAGE_PDF;
+    const camber_status status =
+        camber_page_write(input->page, input->scene, session->renderer, mesh, format, camber_output_sink(output));
+    const int exit_status = status == CAMBER_OK ? camber_output_publish(output) : camber_output_status(output, status);
+    times->write_ms = camber_now_ms() - start_ms;
+    camber_report_erase_bar(session->report);
+    return exit_status;
+}
+#else
+/* Polylines in pixels are not drawn on sheets. */
+static bool has_page(const camber_input *input) {
+    (void)input;
+    return false;
+}
+
+static camber_page_info info_of(const camber_input *input) {
+    (void)input;
+    return (camber_page_info){0};
+}
+
+static camber_status render_page(camber_input *input, camber_mesh *mesh, writer *w, camber_frame_stats *stats) {
+    (void)input;
+    (void)mesh;
+    (void)w;
+    (void)stats;
+    return CAMBER_ERROR_ARGUMENT;
+}
+#endif
+
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times) {
     camber_session *session = input->session;
     const camber_frame frame = camber_input_frame(input, mesh);
+    const bool on_sheet = has_page(input);
+    const camber_page_info sheet = on_sheet ? info_of(input) : (camber_page_info){0};
     camber_picture_times none;
     if (!times)
         times = &none;
     writer w = {.report = session->report,
                 .context = session->context,
                 .output = output,
-                .width = frame.width,
-                .height = frame.height,
+                .width = on_sheet ? sheet.width : frame.width,
+                .height = on_sheet ? sheet.height : frame.height,
                 .status = CAMBER_OK};
     const double start_ms = camber_now_ms();
-    camber_status status = begin(&w, session->options, camber_input_opaque(input), input->attribution);
+    camber_status status = begin(&w, session->options, on_sheet || camber_input_opaque(input), input->attribution);
     w.write_ms = camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
+        status = on_sheet ? render_page(input, mesh, &w, &times->frame)
+                          : camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
     if (w.status != CAMBER_OK)
         status = w.status;
     const double finish_ms = camber_now_ms();

@@ -128,9 +128,10 @@ static void print_text(const json_t *object) {
                json_is_true(json_object_get(entry, "gl_sharing")) ? ", cl_khr_gl_sharing" : "");
     }
     if (i == 0)
-        printf("device    none: %s\n", json_object_get(object, "devices_error")
-                                           ? text_of(object, "devices_error")
-                                           : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
+        printf("device    none: %s\n",
+               json_object_get(object, "devices_error")
+                   ? text_of(object, "devices_error")
+                   : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
     json_array_foreach(json_object_get(object, "backends"), i, entry) {
         if (json_is_true(json_object_get(entry, "available")))
             printf("GL        %s: %s, %s, targets up to %lld px\n", text_of(entry, "name"),

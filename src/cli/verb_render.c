@@ -44,12 +44,14 @@ static int draw(job *j) {
     camber_report_progress(session->report, "tessellating", -1);
     const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
-    if (made == CAMBER_OK)
+    const bool vector = camber_format_is_vector(session->options->format);
+    if (made == CAMBER_OK && !vector)
         made = camber_input_tessellate(&j->input, j->mesh);
     j->tessellate_ms = camber_now_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
-    status = camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
+    status = vector ? camber_picture_write_page(&j->input, j->mesh, &j->output, &j->times)
+                    : camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
     j->written_bytes = j->output.size_bytes;
     return status;
 }

@@ -296,7 +296,8 @@ static camber_status encode_png(camber_encoder *self, const camber_pixels *pixel
                             .height = pixels->height,
                             .kind = CAMBER_PNG_KIND_PALETTE,
                             .texts = self->desc.texts,
-                            .text_count = self->desc.text_count};
+                            .text_count = self->desc.text_count,
+                            .dpi = self->desc.dpi};
     bool fits;
     const camber_status status = camber_colors_number(&self->colors, pixels, self->desc.opaque, png8, &fits);
     if (status != CAMBER_OK)

@@ -30,8 +30,11 @@ static camber_status check_desc(camber_context *context, const camber_png_desc *
 /* ---- A small picture ---- */
 
 static camber_status begin_held(camber_png *png, const camber_png_desc *desc) {
-    const camber_encoder_desc encoder = {
-        .opaque = desc->opaque, .compression = desc->compression, .texts = desc->texts, .text_count = desc->text_count};
+    const camber_encoder_desc encoder = {.opaque = desc->opaque,
+                                         .compression = desc->compression,
+                                         .texts = desc->texts,
+                                         .text_count = desc->text_count,
+                                         .dpi = desc->dpi};
     png->rgba = camber_alloc(png->context, (size_t)desc->width * desc->height, 4);
     return png->rgba ? camber_encoder_create(png->context, &encoder, &png->encoder) : CAMBER_ERROR_MEMORY;
 }
@@ -60,7 +63,8 @@ static camber_status begin_stream(camber_png *png, const camber_png_desc *desc) 
                                   .kind = png->kind,
                                   .depth = 8,
                                   .texts = desc->texts,
-                                  .text_count = desc->text_count};
+                                  .text_count = desc->text_count,
+                                  .dpi = desc->dpi};
     png->row = camber_alloc(png->context, camber_png_row_bytes(png->kind, 8, desc->width), 1);
     if (!png->row)
         return CAMBER_ERROR_MEMORY;

@@ -57,6 +57,17 @@ static bool put_palette(camber_sink sink, const camber_png_head *head) {
            (alpha_count == 0 || put_chunk(sink, "tRNS", &(part){alphas, alpha_count}, 1));
 }
 
+/* The fields: pixels per unit along both axes, and the unit, which is the metre. */
+static bool put_density(camber_sink sink, double dpi) {
+    uint8_t phys[9] = {[8] = 1};
+    const double per_metre = dpi / 0.0254 + 0.5;
+    if (!(per_metre >= 1.0 && per_metre < 2147483648.0))
+        return true;
+    put_u32(phys, (uint32_t)per_metre);
+    put_u32(phys + 4, (uint32_t)per_metre);
+    return put_chunk(sink, "pHYs", &(part){phys, sizeof phys}, 1);
+}
+
 bool camber_png_put_head(camber_sink sink, const camber_png_head *head) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t perceptual = 0; /* the rendering intent of sRGB */
@@ -66,7 +77,7 @@ bool camber_png_put_head(camber_sink sink, const camber_png_head *head) {
     ihdr[8] = (uint8_t)head->depth;
     ihdr[9] = (uint8_t)head->kind;
     bool taken = put(sink, signature, sizeof signature) && put_chunk(sink, "IHDR", &(part){ihdr, sizeof ihdr}, 1) &&
-                 put_chunk(sink, "sRGB", &(part){&perceptual, 1}, 1);
+                 put_chunk(sink, "sRGB", &(part){&perceptual, 1}, 1) && put_density(sink, head->dpi);
     for (size_t i = 0; i < head->text_count && taken; i++)
         taken = put_text(sink, &head->texts[i]);
     return taken && (head->kind != CAMBER_PNG_KIND_PALETTE || put_palette(sink, head));

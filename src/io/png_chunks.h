@@ -19,6 +19,7 @@ typedef struct camber_png_head {
     int depth; /* bits per sample: 8, or for a palette also 1, 2 and 4 */
     const camber_png_text *texts;
     size_t text_count;
+    double dpi;                  /* 0: unknown */
     const uint8_t (*palette)[4]; /* straight RGBA; colours that are not opaque come first */
     size_t palette_count;
 } camber_png_head;

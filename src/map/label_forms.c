@@ -196,6 +196,7 @@ static double weight_of(const camber_features *features, const camber_feature_vi
 static camber_status add_runs(camber_label_layout *layout, const camber_symbol *symbol, camber_label_form *form) {
     const camber_label_rule *rule = layout->rules + form->rule;
     form->first_run = (uint32_t)layout->run_count;
+    form->run_count = (uint32_t)symbol->section_count;
     for (size_t i = 0; i < symbol->section_count; i++) {
         const camber_symbol_section *section = symbol->sections + i;
         camber_label_run run = {.look = rule->text_look,

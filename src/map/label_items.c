@@ -6,10 +6,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct item_maker {
     camber_label_layout *layout;
     camber_labels *labels;
+    uint32_t *run_bytes; /* where the runs of the current label's text begin in the labels' words */
+    size_t run_capacity, word_capacity;
     size_t item_capacity, label_capacity;
     camber_label_track track;
     camber_text_glyph *glyphs; /* of a text whose lines are justified for its anchor */
@@ -139,7 +142,8 @@ static camber_status add_glyph(item_maker *m, const camber_label_candidate *c, c
     const camber_label_run *run = m->layout->runs + form->first_run + g->run;
     const double em = m->layout->rules[form->rule].text_px * (double)g->scale;
     double size[2] = {em, em};
-    camber_label_item item = {.glyph = g->glyph, .look = run->look, .label = label};
+    camber_label_item item = {
+        .glyph = g->glyph, .look = run->look, .label = label, .byte = m->run_bytes[g->run] + g->byte};
     if (g->glyph == CAMBER_NO_GLYPH) {
         if (!run->image)
             return CAMBER_OK;
@@ -253,7 +257,31 @@ static camber_status add_label(item_maker *m, const camber_label_candidate *c) {
         box =
             (camber_box){box.x0 * window->scale - window->origin_px[0], box.y0 * window->scale - window->origin_px[1],
                          box.x1 * window->scale - window->origin_px[0], box.y1 * window->scale - window->origin_px[1]};
-    l->labels[l->label_count++] = (camber_label){c->feature, box};
+    l->labels[l->label_count++] = (camber_label){.feature = c->feature, .box = box};
+    return CAMBER_OK;
+}
+
+/* Copies the words of a label that shows its text. */
+static camber_status add_words(item_maker *m, const camber_label_candidate *c, uint32_t label) {
+    camber_labels *l = m->labels;
+    const camber_label_form *form = m->layout->forms + c->form;
+    if (!camber_grow(l->context, &m->run_bytes, &m->run_capacity, (size_t)form->run_count + 1, sizeof *m->run_bytes))
+        return CAMBER_ERROR_MEMORY;
+    l->labels[label].first_byte = (uint32_t)l->word_size;
+    const char *said = form->words;
+    for (uint32_t i = 0; i < form->run_count; i++) {
+        const size_t size = strlen(said);
+        m->run_bytes[i] = (uint32_t)l->word_size;
+        if (size > UINT32_MAX - l->word_size)
+            return camber_fail(l->context, CAMBER_ERROR_LIMIT,
+                               "labels: more than 4 GB of text; draw a smaller picture");
+        if (!camber_grow(l->context, &l->words, &m->word_capacity, l->word_size + size + 1, 1))
+            return CAMBER_ERROR_MEMORY;
+        memcpy(l->words + l->word_size, said, size);
+        l->word_size += size;
+        said += size + 1;
+    }
+    l->labels[label].byte_count = (uint32_t)l->word_size - l->labels[label].first_byte;
     return CAMBER_OK;
 }
 
@@ -272,8 +300,11 @@ static camber_status make_layer(item_maker *m, const camber_layout_layer *layer,
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
         const camber_label_candidate *c = list[i].candidate;
         const bool along = camber_label_rule_of(m->layout, c)->text_along && c->line != CAMBER_NO_PATH;
+        const uint32_t label = (uint32_t)(first_label + i);
         if (c->shows_text)
-            status = along ? add_along(m, c, (uint32_t)(first_label + i)) : add_text(m, c, (uint32_t)(first_label + i));
+            status = add_words(m, c, label);
+        if (c->shows_text && status == CAMBER_OK)
+            status = along ? add_along(m, c, label) : add_text(m, c, label);
     }
     made.glyph_count = l->item_count - made.first_glyph;
     if (status == CAMBER_OK && count)
@@ -318,5 +349,6 @@ camber_status camber_label_items_make(camber_label_layout *layout, camber_labels
     }
     camber_free(layout->context, m.track.points);
     camber_free(layout->context, m.glyphs);
+    camber_free(layout->context, m.run_bytes);
     return status == CAMBER_OK ? take_looks(layout, labels) : status;
 }

@@ -46,6 +46,8 @@ typedef struct camber_label_form {
     uint32_t first_run;    /* of the text */
     camber_text *text;     /* NULL: none */
     camber_text *vertical; /* the same text, written downwards. NULL: none */
+    const char *words;     /* the characters of its runs, each with a 0 at its end. NULL: there is no text */
+    uint32_t run_count;
     const camber_sprite_image *icon;
     double sort_key;
     double weight; /* of two labels with equal sort keys, the lighter is placed first */

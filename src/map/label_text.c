@@ -13,6 +13,7 @@ typedef struct word {
     char *key; /* bytes */
     size_t key_size;
     camber_text *text;
+    char *said; /* the characters of its runs, each with a 0 at its end */
 } word;
 
 struct camber_label_words {
@@ -30,12 +31,17 @@ struct camber_label_words {
 /* The most memory for keys. */
 #define KEY_LIMIT ((size_t)256 << 20)
 
+static void free_word(camber_context *context, word *w) {
+    camber_text_destroy(w->text);
+    camber_free(context, w->said);
+}
+
 void camber_label_words_free(camber_label_layout *layout) {
     struct camber_label_words *words = layout->words;
     if (!words)
         return;
     for (size_t i = 0; i < words->count; i++)
-        camber_text_destroy(words->items[i].text);
+        free_word(layout->context, words->items + i);
     camber_arena_free(&words->arena);
     camber_free(layout->context, words->items);
     camber_free(layout->context, words->slots);
@@ -69,9 +75,9 @@ camber_status camber_label_words_keep(camber_label_layout *layout) {
     for (size_t i = 0; i < words->count; i++) {
         camber_text *text = words->items[i].text;
         if (used && bsearch(&text, texts, used, sizeof *texts, compare_texts))
-            words->items[kept++].text = text;
+            words->items[kept++] = words->items[i];
         else
-            camber_text_destroy(text);
+            free_word(layout->context, words->items + i);
     }
     words->count = kept;
     camber_free(layout->context, texts);
@@ -153,8 +159,25 @@ static bool widen(camber_context *context, struct camber_label_words *words) {
     return true;
 }
 
-/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. */
-static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text) {
+/* Copies the characters of the runs; an image has none. */
+static char *copy_said(camber_context *context, const camber_text_desc *desc) {
+    size_t size = 1;
+    for (size_t i = 0; i < desc->run_count; i++)
+        size += desc->runs[i].size_bytes + 1;
+    char *said = camber_alloc_zero(context, size, 1), *to = said;
+    for (size_t i = 0; i < desc->run_count && said; i++) {
+        if (desc->runs[i].size_bytes)
+            memcpy(to, desc->runs[i].text, desc->runs[i].size_bytes);
+        to += desc->runs[i].size_bytes + 1;
+    }
+    return said;
+}
+
+/* Finds the text of a desc in the table, or shapes it. NULL: the text would show nothing. *said receives its
+ * characters.
+ */
+static camber_status shape(camber_label_layout *layout, const camber_text_desc *desc, camber_text **text,
+                           const char **said) {
     camber_context *context = layout->context;
     struct camber_label_words *words = layout->words;
     if (!write_key(context, words, desc) || !widen(context, words))
@@ -169,10 +192,16 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
         const camber_status status = camber_text_shape(layout->fonts, desc, &made);
         if (status != CAMBER_OK)
             return status;
-        words->items[words->count++] = (word){hash, key, words->key_size, made};
+        char *copy = copy_said(context, desc);
+        if (!copy) {
+            camber_text_destroy(made);
+            return CAMBER_ERROR_MEMORY;
+        }
+        words->items[words->count++] = (word){hash, key, words->key_size, made, copy};
         *slot = (uint32_t)words->count;
     }
     *text = words->items[*slot - 1].text;
+    *said = words->items[*slot - 1].said;
     if ((*text)->glyph_count == 0)
         *text = NULL;
     return CAMBER_OK;
@@ -274,7 +303,7 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
                              .letter_spacing_em = (float)symbol->letter_spacing_em,
                              .anchor = rule->variable ? CAMBER_ANCHOR_CENTER : symbol->text_anchor,
                              .justify = rule->text_along ? CAMBER_JUSTIFY_CENTER : symbol->justify};
-    camber_status status = shape(layout, &desc, &form->text);
+    camber_status status = shape(layout, &desc, &form->text, &form->words);
     if (status != CAMBER_OK || !form->text)
         return status;
     hash_words(symbol, form);
@@ -287,5 +316,5 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
         desc.justify = CAMBER_JUSTIFY_LEFT;
         desc.anchor = turn_anchor(desc.anchor);
     }
-    return shape(layout, &desc, &form->vertical);
+    return shape(layout, &desc, &form->vertical, &form->words);
 }

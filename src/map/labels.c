@@ -49,6 +49,7 @@ void camber_labels_free(camber_labels *labels) {
     camber_free(labels->context, labels->items);
     camber_free(labels->context, labels->looks);
     camber_free(labels->context, labels->labels);
+    camber_free(labels->context, labels->words);
     *labels = (camber_labels){.context = labels->context};
 }
 

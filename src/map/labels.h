@@ -23,6 +23,7 @@ typedef struct camber_label_item {
     const camber_sprite_image *icon;
     uint32_t look; /* index into the labels' looks */
     uint32_t label;
+    uint32_t byte; /* of a glyph: where its characters begin in the labels' words */
     /* Maps em (for an icon: fractions of its width and height) to device px of the picture:
      * px = (x + xx * u + xy * v, y + yx * u + yy * v). If the look is flat, these are px of the map's plane; otherwise
      * of the picture as it is seen, whatever the pitch. */
@@ -35,7 +36,8 @@ typedef struct camber_label_item {
 /* A label that is shown. */
 typedef struct camber_label {
     uint32_t feature;
-    camber_box box; /* around its parts with their padding, device px of the picture */
+    camber_box box;                  /* around its parts with their padding, device px of the picture */
+    uint32_t first_byte, byte_count; /* its text, in the labels' words */
 } camber_label;
 
 /* The items of a layer of the style, in drawing order: icons, then text. */
@@ -55,6 +57,8 @@ typedef struct camber_labels {
     size_t look_count;
     camber_label *labels;
     size_t label_count;
+    char *words; /* the texts of labels, word_size bytes of UTF-8, for pages whose text can be searched */
+    size_t word_size;
 } camber_labels;
 
 /* Places the labels of a view. The result depends neither on the number of threads nor on the order of the features.

@@ -28,6 +28,7 @@ struct camber_scene {
     camber_pass_list pair_passes;
     camber_label_book *book;    /* NULL: none yet, or the scene has only one view */
     camber_label_shapes labels; /* of the picture */
+    camber_labels shown;        /* what they were made from */
     size_t label_count;
 
     /* On the host: empty until camber_scene_project. */
@@ -158,23 +159,20 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
  * features. placed NULL: the labels are those of the view. */
 static camber_status make_labels(camber_scene *scene, const camber_window_labels *placed) {
     const camber_features *features = scene->zoom->features;
-    camber_labels labels = {0};
     if (!features->fonts || scene->use == CAMBER_SCENE_LINES)
         return CAMBER_OK;
     camber_status status = CAMBER_OK;
     if (placed)
-        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &labels);
+        status = camber_zoom_labels_draw(placed->labels, &placed->square, &scene->view, &scene->shown);
     else if (scene->use == CAMBER_SCENE_ONE_VIEW && camber_view_has_zoom_labels(features->style, &scene->view))
-        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &labels);
+        status = camber_zoom_labels_place_view(features, &scene->view, scene->zoom->simplify_px, &scene->shown);
     else if (scene->use == CAMBER_SCENE_ONE_VIEW)
-        status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &labels);
+        status = camber_labels_place(features, &scene->view, features->fonts, features->sprites, &scene->shown);
     else if (scene->book || (status = camber_label_book_create(features, &scene->book)) == CAMBER_OK)
-        status = camber_label_book_place(scene->book, &scene->view, &labels);
+        status = camber_label_book_place(scene->book, &scene->view, &scene->shown);
     if (status == CAMBER_OK)
-        status = camber_label_shapes_make(&labels, features->fonts, &scene->labels);
-    scene->label_count = labels.label_count;
-    if (labels.context)
-        camber_labels_free(&labels);
+        status = camber_label_shapes_make(&scene->shown, features->fonts, &scene->labels);
+    scene->label_count = scene->shown.label_count;
     return status;
 }
 
@@ -219,6 +217,8 @@ static void release_contents(camber_scene *scene) {
     release_projection(scene);
     camber_passes_free(scene->context, &scene->pair_passes);
     camber_label_shapes_free(&scene->labels);
+    if (scene->shown.context)
+        camber_labels_free(&scene->shown);
     camber_plan_network_destroy(&scene->geometry);
     camber_zoom_plan_destroy(scene->own);
 }
@@ -384,6 +384,15 @@ void camber_scene_destroy(camber_scene *scene) {
 }
 
 /* ---- Getters ---- */
+
+camber_scene_parts camber_scene_get_parts(camber_scene *scene) {
+    return (camber_scene_parts){.zoom = scene->zoom,
+                                .view = &scene->view,
+                                .geometry = &scene->geometry,
+                                .passes = &scene->pair_passes,
+                                .labels = &scene->shown,
+                                .shapes = &scene->labels};
+}
 
 camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     camber_scene_info info = {.zoom = scene->view.zoom,

@@ -2,6 +2,9 @@
 #ifndef CAMBER_MAP_SCENE_H
 #define CAMBER_MAP_SCENE_H
 
+#include "map/labels.h"
+#include "map/passes.h"
+#include "map/plan_network.h"
 #include "map/zoom_labels.h"
 #include "map/zoom_plan.h"
 
@@ -18,5 +21,18 @@ typedef struct camber_window_labels {
 camber_status camber_scene_create_window(camber_zoom_plan *zoom, const camber_view *window,
                                          const camber_window_labels *labels, const uint32_t *polylines,
                                          size_t polyline_count, camber_scene **scene);
+
+/* The parts that a scene is drawn from, for pages (print/). Passes are over the entries of the network: their paints
+ * are indexed by the entries' rows. All of it is valid until the scene moves. */
+typedef struct camber_scene_parts {
+    const camber_zoom_plan *zoom;
+    const camber_view *view;
+    const camber_plan_network *geometry;
+    const camber_pass_list *passes;
+    const camber_labels *labels;
+    camber_label_shapes *shapes;
+} camber_scene_parts;
+
+camber_scene_parts camber_scene_get_parts(camber_scene *scene);
 
 #endif

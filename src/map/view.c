@@ -133,6 +133,7 @@ camber_status camber_view_create(camber_context *context, const camber_view_desc
     if (status != CAMBER_OK)
         return status;
     made.pitch_deg = desc->pitch_deg;
+    made.cover = desc->cover;
     set_bearing(&made, desc->bearing_deg);
     set_zoom(&made, 0.0);
     switch (desc->kind) {
@@ -152,8 +153,10 @@ void camber_view_frame(camber_view *view, camber_box bounds, double fill, double
     view->y = u * view->sine + v * view->cosine;
     const double across = fill * view->width / (bounds.x1 - bounds.x0);
     const double down = fill * view->height / (bounds.y1 - bounds.y0);
+    const bool covers = view->cover && isfinite(across) && isfinite(down);
+    const double at_once = covers ? fmax(across, down) / fill : fmin(across, down);
     /* A single point divides by 0, and the infinite zoom is cut to the largest one. */
-    const double zoom = log2(fmin(across, down) / (WORLD_CSS_PX * view->ratio));
+    const double zoom = log2(at_once / (WORLD_CSS_PX * view->ratio));
     set_zoom(view, zoom < max_zoom ? zoom : max_zoom);
 }
 

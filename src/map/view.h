@@ -23,6 +23,7 @@ typedef struct camber_view {
     double pitch_deg;
     double ratio;           /* device px per CSS px */
     uint32_t width, height; /* device px */
+    bool cover;             /* camber_view_frame fills the picture with the bounds */
 } camber_view;
 
 /* Checks the desc, and completes a BBOX or CENTER view. A FIT view starts as the whole world, and then needs
@@ -30,7 +31,8 @@ typedef struct camber_view {
 camber_status camber_view_create(camber_context *context, const camber_view_desc *desc, camber_view *view);
 
 /* Moves and zooms the view so that bounds take the fraction fill (0 to 1) of the tighter side, without exceeding
- * max_zoom. The bounds are in the view's rotated axes: u = x cos + y sin, v = y cos - x sin of world coordinates. */
+ * max_zoom. A view that covers is filled by the bounds instead. The bounds are in the view's rotated axes: u = x cos +
+ * y sin, v = y cos - x sin of world coordinates. */
 void camber_view_frame(camber_view *view, camber_box bounds, double fill, double max_zoom);
 
 /* Writes the quadrangle of the world that is visible, as pairs of x, y. With a pitch it ends at the far plane. */

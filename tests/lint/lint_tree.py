@@ -623,6 +623,8 @@ LIBRARIES = {
     "liblzma": ("liblzma-dev", "pkgconfig(liblzma)", "xz"),
     "libwebp": ("libwebp-dev", "pkgconfig(libwebp)", "webp"),
     "libmicrohttpd": ("libmicrohttpd-dev", "pkgconfig(libmicrohttpd)", "libmicrohttpd"),
+    "cairo": ("libcairo2-dev", "pkgconfig(cairo)", "cairo"), "cairo-ft": None, "cairo-pdf": None, "cairo-svg": None,
+    "freetype2": None,
     "meshoptimizer": ("libmeshoptimizer-dev", "cmake(meshoptimizer)", "meshoptimizer"),
 }
 # Where a release's version stands besides CMakeLists.txt, and the file's place in LIBRARIES.

@@ -295,6 +295,27 @@ static void test_stream_refused(void **state) {
     host_done(&h, context);
 }
 
+/* A small picture and a large one: the first is encoded at the end, the second as a stream. */
+static void test_density(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    const uint32_t widths[] = {3, STREAM_WIDTH}, heights[] = {2, STREAM_HEIGHT};
+    uint8_t *rgba = make_stream_rows(false);
+    for (size_t i = 0; i < 2; i++) {
+        camber_png_desc desc = {.width = widths[i], .height = heights[i], .opaque = true, .dpi = 300};
+        byte_list file = write_png(context, &desc, rgba, heights[i]);
+        static const uint8_t chunk[] = {0, 0, 0, 9, 'p', 'H', 'Y', 's', 0, 0, 0x2e, 0x23, 0, 0, 0x2e, 0x23, 1};
+        bool found = false;
+        for (size_t at = 0; at + sizeof chunk < 200; at++)
+            found = found || memcmp(file.bytes + at, chunk, sizeof chunk) == 0;
+        assert_true(found);
+        free(file.bytes);
+    }
+    free(rgba);
+    host_done(&h, context);
+}
+
 static camber_status try_stream(camber_context *context, void *user) {
     const camber_png_desc desc = {.width = STREAM_WIDTH, .height = STREAM_HEIGHT, .opaque = true};
     byte_list file = {.refuse_at = SIZE_MAX};
@@ -325,7 +346,7 @@ int main(void) {
         cmocka_unit_test(test_stream_memory), cmocka_unit_test(test_unpremultiply),
         cmocka_unit_test(test_opaque_is_rgb), cmocka_unit_test(test_chunks),
         cmocka_unit_test(test_arguments),     cmocka_unit_test(test_row_counts),
-        cmocka_unit_test(test_sink_refuses),
+        cmocka_unit_test(test_sink_refuses),  cmocka_unit_test(test_density),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

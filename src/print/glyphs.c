@@ -1,0 +1,313 @@
+/* Draws glyphs by Cairo: as text whose fonts a PDF embeds, or as outlines.
+ *
+ * Input: glyphs of the text layer, by their numbers in a set of fonts. Main idea: Cairo gets the very font files that
+ * the text was shaped with. Glyphs that come from a style's ranges of distances, and named instances of variable fonts,
+ * have no such file; they become a font of Cairo's own kind, made of their outlines. */
+#ifdef CAMBER_CAIRO
+
+#include "print/page.h"
+
+#include "text/fonts.h"
+
+#include <cairo-ft.h>
+#include <hb-ot.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Cairo's own glyphs are flattened this finely, which is enough for a headline. */
+static const float TOLERANCE_EM = 1.0f / 1024.0f;
+
+/* ---- Fonts from files ---- */
+
+/* A copy of a font file. Cairo keeps fonts in a cache for longer than the camber_fonts live, so nothing here may belong
+ * to a context. */
+typedef struct font_copy {
+    FT_Library library;
+    FT_Face face;
+    unsigned char bytes[];
+} font_copy;
+
+static const cairo_user_data_key_t copy_key, outlines_key;
+
+static void free_copy(void *user) {
+    font_copy *copy = user;
+    if (copy->face)
+        FT_Done_Face(copy->face);
+    if (copy->library)
+        FT_Done_FreeType(copy->library);
+    free(copy);
+}
+
+/* Returns NULL if FreeType does not read the font. */
+static cairo_font_face_t *open_file(hb_face_t *face) {
+    hb_blob_t *blob = hb_face_reference_blob(face);
+    unsigned size = 0;
+    const char *bytes = hb_blob_get_data(blob, &size);
+    font_copy *copy = size ? calloc(1, sizeof *copy + size) : NULL;
+    cairo_font_face_t *made = NULL;
+    if (!copy)
+        goto done;
+    memcpy(copy->bytes, bytes, size);
+    if (FT_Init_FreeType(&copy->library) ||
+        FT_New_Memory_Face(copy->library, copy->bytes, (FT_Long)size, (FT_Long)hb_face_get_index(face), &copy->face))
+        goto done;
+    made = cairo_ft_font_face_create_for_ft_face(copy->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
+    if (cairo_font_face_set_user_data(made, &copy_key, copy, free_copy) != CAIRO_STATUS_SUCCESS) {
+        cairo_font_face_destroy(made);
+        made = NULL;
+        goto done;
+    }
+    copy = NULL; /* the face owns it */
+done:
+    if (copy)
+        free_copy(copy);
+    hb_blob_destroy(blob);
+    return made;
+}
+
+/* ---- Fonts from outlines ---- */
+
+static void add_outline(cairo_t *cr, const camber_outline *outline) {
+    for (size_t r = 0; r < outline->ring_count; r++) {
+        for (uint32_t i = outline->offsets[r]; i < outline->offsets[r + 1]; i++)
+            cairo_line_to(cr, (double)outline->points[2 * i], (double)outline->points[2 * i + 1]);
+        cairo_close_path(cr);
+    }
+}
+
+static cairo_status_t draw_glyph(cairo_scaled_font_t *scaled, unsigned long glyph, cairo_t *cr,
+                                 cairo_text_extents_t *extents) {
+    camber_fonts *fonts = cairo_font_face_get_user_data(cairo_scaled_font_get_font_face(scaled), &outlines_key);
+    camber_outline outline;
+    if (!fonts || camber_fonts_get_outline(fonts, (uint32_t)glyph, TOLERANCE_EM, &outline) != CAMBER_OK)
+        return CAIRO_STATUS_USER_FONT_ERROR;
+    /* Readers find words by advances; each glyph has a place of its own anyway. */
+    extents->x_advance = outline.ring_count ? fmax((double)outline.right, 0.0) : 0.25;
+    add_outline(cr, &outline);
+    cairo_fill(cr);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/* The fonts are alive as long as glyphs are drawn; a font in Cairo's cache does not draw any more. */
+static cairo_font_face_t *make_outlines(camber_fonts *fonts) {
+    cairo_font_face_t *made = cairo_user_font_face_create();
+    cairo_user_font_face_set_render_glyph_func(made, draw_glyph);
+    if (cairo_font_face_set_user_data(made, &outlines_key, fonts, NULL) == CAIRO_STATUS_SUCCESS)
+        return made;
+    cairo_font_face_destroy(made);
+    return NULL;
+}
+
+/* ---- Faces ---- */
+
+static bool is_instance(hb_font_t *font) {
+    unsigned count = 0;
+    const int *coordinates = hb_font_get_var_coords_normalized(font, &count);
+    for (unsigned i = 0; i < count; i++)
+        if (coordinates[i] != 0)
+            return true;
+    return false;
+}
+
+/* Finds the face of a source of glyphs, or makes it. */
+static camber_status find_face(camber_page_fonts *f, uint32_t source, cairo_font_face_t **face) {
+    if (source >= f->face_count) {
+        size_t capacity = f->face_count;
+        const size_t count = f->fonts->source_count;
+        if (!camber_grow(f->context, &f->faces, &capacity, count, sizeof(void *)))
+            return CAMBER_ERROR_MEMORY;
+        for (; f->face_count < count; f->face_count++)
+            f->faces[f->face_count] = NULL;
+    }
+    const camber_face *file = f->fonts->sources[source].face;
+    cairo_font_face_t **found = f->faces + source;
+    if (!*found && file && !is_instance(file->font))
+        *found = open_file(hb_font_get_face(file->font));
+    if (!*found)
+        *found = make_outlines(f->fonts);
+    *face = *found;
+    return *found ? CAMBER_OK : camber_fail(f->context, CAMBER_ERROR_MEMORY, "page: no memory for a font");
+}
+
+void camber_page_fonts_free(camber_page_fonts *f) {
+    for (size_t i = 0; i < f->face_count; i++)
+        if (f->faces[i])
+            cairo_font_face_destroy(f->faces[i]);
+    if (f->context) {
+        camber_free(f->context, f->faces);
+        camber_free(f->context, f->cairo_glyphs);
+        camber_free(f->context, f->clusters);
+    }
+    *f = (camber_page_fonts){0};
+}
+
+/* ---- Runs ---- */
+
+/* Whether bytes are whole characters of UTF-8, as Cairo requires. */
+static bool is_text(const char *text, size_t size) {
+    for (size_t i = 0; i < size;) {
+        const unsigned char c = (unsigned char)text[i];
+        const size_t length = c < 0x80 ? 1 : c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
+        if (c < 0x20 || (c >= 0x80 && c < 0xc2) || !length || i + length > size)
+            return false;
+        uint32_t code = length == 1 ? c : c & (0x7fu >> length);
+        for (size_t k = 1; k < length; k++) {
+            if (((unsigned char)text[i + k] & 0xc0) != 0x80)
+                return false;
+            code = code << 6 | ((unsigned char)text[i + k] & 0x3f);
+        }
+        const uint32_t least = length == 3 ? 0x800 : length == 4 ? 0x10000 : 0;
+        if (code < least || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
+            return false;
+        i += length;
+    }
+    return true;
+}
+
+/* The glyphs of a run that have one face, and whose characters follow each other in the text: forwards or backwards. */
+typedef struct stretch {
+    size_t first, end;
+    cairo_font_face_t *face;
+    bool as_outlines; /* the face is made of outlines */
+    bool backward;
+} stretch;
+
+static uint32_t source_of(const camber_page_fonts *f, const camber_page_glyph *glyph) {
+    return f->fonts->glyphs[glyph->glyph].source;
+}
+
+static camber_status find_stretch(camber_page_fonts *f, const camber_page_run *run, size_t first, stretch *s) {
+    const camber_page_glyph *glyphs = run->glyphs;
+    const uint32_t source = source_of(f, glyphs + first);
+    *s = (stretch){.first = first, .end = first + 1};
+    const camber_status status = find_face(f, source, &s->face);
+    s->as_outlines = status == CAMBER_OK && cairo_font_face_get_type(s->face) == CAIRO_FONT_TYPE_USER;
+    int direction = 0;
+    for (; s->end < run->count && source_of(f, glyphs + s->end) == source; s->end++) {
+        const camber_page_glyph *before = glyphs + s->end - 1, *next = glyphs + s->end;
+        if (next->first_byte == before->first_byte)
+            continue;
+        const int step = next->first_byte == before->end_byte ? 1 : next->end_byte == before->first_byte ? -1 : 0;
+        if (step == 0 || (direction && step != direction))
+            break;
+        direction = step;
+    }
+    s->backward = direction < 0;
+    return status;
+}
+
+/* Sets the font, and the glyphs of a stretch. */
+static camber_status set_glyphs(camber_page_fonts *f, cairo_t *cr, const camber_page_run *run, const stretch *s) {
+    const size_t count = s->end - s->first;
+    if (!camber_grow(f->context, &f->cairo_glyphs, &f->glyph_capacity, count, sizeof *f->cairo_glyphs) ||
+        !camber_grow(f->context, &f->clusters, &f->cluster_capacity, count, sizeof *f->clusters))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        const camber_page_glyph *g = run->glyphs + s->first + i;
+        const uint32_t number = s->as_outlines ? g->glyph : f->fonts->glyphs[g->glyph].number;
+        f->cairo_glyphs[i] = (cairo_glyph_t){number, g->x, g->y};
+    }
+    cairo_matrix_t matrix;
+    cairo_matrix_init(&matrix, run->xx, run->yx, run->xy, run->yy, 0.0, 0.0);
+    cairo_set_font_face(cr, s->face);
+    cairo_set_font_matrix(cr, &matrix);
+    return CAMBER_OK;
+}
+
+/* Groups the glyphs of a stretch that share characters. *first_byte and *end_byte receive the range of the text. */
+static size_t make_clusters(camber_page_fonts *f, const camber_page_run *run, const stretch *s, uint32_t *first_byte,
+                            uint32_t *end_byte) {
+    size_t count = 0;
+    *first_byte = UINT32_MAX;
+    *end_byte = 0;
+    for (size_t i = s->first; i < s->end; i++) {
+        const camber_page_glyph *g = run->glyphs + i;
+        if (i > s->first && g->first_byte == g[-1].first_byte) {
+            f->clusters[count - 1].num_glyphs++;
+            continue;
+        }
+        f->clusters[count++] = (cairo_text_cluster_t){(int)(g->end_byte - g->first_byte), 1};
+        *first_byte = g->first_byte < *first_byte ? g->first_byte : *first_byte;
+        *end_byte = g->end_byte > *end_byte ? g->end_byte : *end_byte;
+    }
+    /* Cairo lists clusters in the order of the text; the glyphs stay as they are. */
+    for (size_t i = 0; s->backward && i < count / 2; i++) {
+        const cairo_text_cluster_t other = f->clusters[i];
+        f->clusters[i] = f->clusters[count - 1 - i];
+        f->clusters[count - 1 - i] = other;
+    }
+    return count;
+}
+
+static bool can_draw(const camber_page_run *run) {
+    const double area = run->xx * run->yy - run->xy * run->yx;
+    return run->count > 0 && run->count <= INT32_MAX && isfinite(area) && fabs(area) > 1e-6;
+}
+
+camber_status camber_page_show(camber_page_fonts *f, cairo_t *cr, const camber_page_run *run) {
+    camber_status status = CAMBER_OK;
+    if (f->as_paths) {
+        cairo_new_path(cr);
+        status = camber_page_add_outlines(f, cr, run);
+        cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
+        cairo_fill(cr);
+        return status;
+    }
+    stretch s;
+    for (size_t i = 0; can_draw(run) && i < run->count && status == CAMBER_OK; i = s.end) {
+        uint32_t first_byte, end_byte;
+        status = find_stretch(f, run, i, &s);
+        if (status == CAMBER_OK)
+            status = set_glyphs(f, cr, run, &s);
+        if (status != CAMBER_OK)
+            break;
+        const size_t clusters = make_clusters(f, run, &s, &first_byte, &end_byte);
+        const char *text = run->text + first_byte;
+        const size_t size = end_byte - first_byte;
+        bool whole = size <= INT32_MAX && is_text(text, size);
+        for (size_t k = 0, at = 0; k < clusters && whole; at += (size_t)f->clusters[k++].num_bytes)
+            whole = is_text(text + at, (size_t)f->clusters[k].num_bytes);
+        if (whole)
+            cairo_show_text_glyphs(cr, text, (int)size, f->cairo_glyphs, (int)(s.end - s.first), f->clusters,
+                                   (int)clusters, s.backward ? CAIRO_TEXT_CLUSTER_FLAG_BACKWARD : 0);
+        else
+            cairo_show_glyphs(cr, f->cairo_glyphs, (int)(s.end - s.first));
+    }
+    return status;
+}
+
+/* Outlines of a font that is made of them are added as they are; Cairo would trace pictures of them. */
+static camber_status add_made(camber_page_fonts *f, cairo_t *cr, const camber_page_run *run, const stretch *s) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = s->first; i < s->end && status == CAMBER_OK; i++) {
+        const camber_page_glyph *g = run->glyphs + i;
+        camber_outline outline;
+        cairo_matrix_t matrix;
+        cairo_matrix_init(&matrix, run->xx, run->yx, run->xy, run->yy, g->x, g->y);
+        status = camber_fonts_get_outline(f->fonts, g->glyph, TOLERANCE_EM, &outline);
+        cairo_save(cr);
+        cairo_transform(cr, &matrix);
+        if (status == CAMBER_OK)
+            add_outline(cr, &outline);
+        cairo_restore(cr);
+    }
+    return status;
+}
+
+camber_status camber_page_add_outlines(camber_page_fonts *f, cairo_t *cr, const camber_page_run *run) {
+    camber_status status = CAMBER_OK;
+    stretch s;
+    for (size_t i = 0; can_draw(run) && i < run->count && status == CAMBER_OK; i = s.end) {
+        status = find_stretch(f, run, i, &s);
+        if (status == CAMBER_OK && s.as_outlines) {
+            status = add_made(f, cr, run, &s);
+        } else if (status == CAMBER_OK) {
+            status = set_glyphs(f, cr, run, &s);
+            if (status == CAMBER_OK)
+                cairo_glyph_path(cr, f->cairo_glyphs, (int)(s.end - s.first));
+        }
+    }
+    return status;
+}
+
+#endif

@@ -274,7 +274,9 @@ static void test_ratio(void **state) {
     assert_int_equal(once.item_count, twice.item_count);
     for (size_t i = 0; i < once.item_count; i++) {
         const camber_label_item *a = once.items + i, *b = twice.items + i;
-        assert_true(a->glyph == b->glyph && 2.0f * a->x == b->x && 2.0f * a->y == b->y && 2.0f * a->xx == b->xx);
+        const float apart = a->icon ? 1.0f : 0.0f; /* images that keep their size are on whole px */
+        assert_true(a->glyph == b->glyph && 2.0f * a->xx == b->xx);
+        assert_true(fabsf(2.0f * a->x - b->x) <= apart && fabsf(2.0f * a->y - b->y) <= apart);
         assert_true(2.0f * once.looks[a->look].halo_width_px == twice.looks[b->look].halo_width_px);
     }
     camber_labels_free(&once);

@@ -1,15 +1,12 @@
 /* Areas: the device beside the twin to the last bit; pictures beside 16 x 16 samples of each pixel, which share no
  * formula with what they judge; no seam between neighbours; the same bytes in areas and slices of any size; a camera
  * that cuts rings beside rings that are not cut; many fills, in their order and by few kernels. */
-#define _GNU_SOURCE /* RTLD_NEXT */
-
 #include "raster_twin.h"
 
 #include "camber_network.h"
 #include "draw/renderer.h"
+#include "gpu/launch.h"
 
-#include <CL/cl.h>
-#include <dlfcn.h>
 #include <math.h>
 
 enum { SIDE_PX = 500, SAMPLES = 16 };
@@ -614,16 +611,15 @@ static void test_changes(void **state) {
 
 static size_t launches; /* of kernels */
 
-/* OpenCL's call on its way to the driver. */
-cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset,
-                              const size_t *global, const size_t *local, cl_uint wait_count, const cl_event *waits,
-                              cl_event *event) {
-    cl_int (*next)(cl_command_queue, cl_kernel, cl_uint, const size_t *, const size_t *, const size_t *, cl_uint,
-                   const cl_event *, cl_event *);
-    void *found = dlsym(RTLD_NEXT, "clEnqueueNDRangeKernel");
-    memcpy(&next, &found, sizeof next);
+/* Each launch on its way to the back end. */
+camber_status __real_camber_launch_kernel(const camber_device *device, const camber_launch *launch,
+                                          camber_event **event);
+camber_status __wrap_camber_launch_kernel(const camber_device *device, const camber_launch *launch,
+                                          camber_event **event);
+camber_status __wrap_camber_launch_kernel(const camber_device *device, const camber_launch *launch,
+                                          camber_event **event) {
     launches++;
-    return next(queue, kernel, dimensions, offset, global, local, wait_count, waits, event);
+    return __real_camber_launch_kernel(device, launch, event);
 }
 
 /* A hundred thousand squares of a thousand colours, or of two in turn, are drawn by as many kernels as those of one.

@@ -147,6 +147,8 @@ static camber_status make_geometry(camber_scene *scene, camber_features *consume
     camber_status status = CAMBER_OK;
     if (consumed_features && !zoom->plan.has_arc_length && !zoom->plan.has_corners)
         status = camber_features_thin(consumed_features, zoom->least_importance);
+    if (status == CAMBER_OK && !zoom->plan.all.first_entries) /* the former network has consumed them */
+        status = camber_plan_list(zoom->features, &zoom->plan, NULL, zoom->features->polyline_count, &zoom->plan.all);
     if (status == CAMBER_OK)
         status = camber_plan_network_create(zoom, &scene->view, stays ? CAMBER_NETWORK_VIEW : CAMBER_NETWORK_VIEWS,
                                             &zoom->plan.all, &scene->geometry);

@@ -104,7 +104,9 @@ camber_status camber_zoom_plan_create_view(const camber_features *features, cons
 }
 
 bool camber_zoom_plan_move(camber_zoom_plan *zoom, const camber_view *view) {
-    if (zoom->features_key != camber_features_key(zoom->features) ||
+    const camber_features *features = zoom->features;
+    const bool has_points = features->points || !features->polyline_count; /* another network may need them */
+    if (!has_points || zoom->features_key != camber_features_key(features) ||
         camber_view_key(view) != camber_view_key(&zoom->view))
         return false;
     zoom->view = *view;

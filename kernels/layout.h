@@ -20,10 +20,11 @@
 #define CAMBER_POINT_CHUNK 8
 #endif
 
-/* Defines a kernel with work-groups of `size` work-items; its body has the number of its work-item in CAMBER_WORK_ITEM, and how many there are in CAMBER_WORK_ITEMS.
- * On a CPU the body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and
- * compiles its loop over work-items around each, which takes twice as long and runs no faster. min_vector_width: LLVM
- * halves AVX-512's vectors unless a function asks for whole ones; processors without AVX-512 ignore it. */
+/* Defines a kernel with work-groups of `size` work-items; its body has the number of its work-item in CAMBER_WORK_ITEM,
+ * and how many there are in CAMBER_WORK_ITEMS. On a CPU the body is a function that the kernel calls: PoCL puts a
+ * kernel's body into three entries of each build and compiles its loop over work-items around each, which takes twice
+ * as long and runs no faster. min_vector_width: LLVM halves AVX-512's vectors unless a function asks for whole ones;
+ * processors without AVX-512 ignore it. */
 #if defined(CAMBER_DEVICE) && !defined(CAMBER_AHEAD_OF_TIME)
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define CAMBER_LIST(...) __VA_ARGS__ /* only for CPUs: NVIDIA's compiler does not know such a macro */

@@ -84,9 +84,9 @@ typedef struct camber_outline {
 CAMBER_API camber_status camber_fonts_get_outline(camber_fonts *fonts, uint32_t glyph, float tolerance_em,
                                                   camber_outline *outline);
 
-/* Returns a glyph's outline as camber draws it in a text of size_px device px per em, which is above 0. Its segments are
- * at most 1/32 px away from its curves. Below 20 px, strokes are 0.2 px * (1 - size_px / 20) wider than in the font, so
- * that small text is as dark as other programs draw it. Glyphs that the caller provides are unchanged.
+/* Returns a glyph's outline as camber draws it in a text of size_px device px per em, which is above 0. Its segments
+ * are at most 1/32 px away from its curves. Below 20 px, strokes are 0.2 px * (1 - size_px / 20) wider than in the
+ * font, so that small text is as dark as other programs draw it. Glyphs that the caller provides are unchanged.
  * Otherwise as camber_fonts_get_outline. */
 CAMBER_API camber_status camber_fonts_get_sized_outline(camber_fonts *fonts, uint32_t glyph, float size_px,
                                                         camber_outline *outline);

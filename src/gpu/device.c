@@ -123,7 +123,7 @@ camber_status camber_device_create(camber_context *context, const camber_device_
         status = choose_device(made, &full, &found);
     made->backend = found.backend;
     made->info = found.info;
-    if (status == CAMBER_OK) {
+    if (status == CAMBER_OK && found.backend) {
         apply_bounds(made, &full);
         status = found.backend->open(made, &found, &full);
     }

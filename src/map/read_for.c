@@ -16,8 +16,8 @@
 static const double WIDEST_PX = 16384.0, LARGEST_REACH_PX = 65536.0;
 /* A margin for effects of the camera near a picture's edges, px. */
 static const double SLACK_PX = 64.0;
-/* How far outside a picture the anchor of a label may be if the label reaches into the picture, CSS px; and how far what
- * is there may matter to the labels of a zoom that are in the picture (zoom_labels.c). */
+/* How far outside a picture the anchor of a label may be if the label reaches into the picture, CSS px; and how far
+ * what is there may matter to the labels of a zoom that are in the picture (zoom_labels.c). */
 static const double LABEL_PX = 256.0, ZOOM_LABEL_PX = 1024.0;
 
 static double bound(const camber_style_layer *layer, camber_property_id property, double zoom) {

@@ -433,8 +433,8 @@ static camber_box picture_box(const camber_label_window *window, const camber_vi
 }
 
 /* Makes the items of a block's labels in a picture. */
-static camber_status draw_block(const label_block *block, const camber_label_window *window,
-                                const camber_view *picture, camber_labels *drawn) {
+static camber_status draw_block(const label_block *block, const camber_label_window *window, const camber_view *picture,
+                                camber_labels *drawn) {
     const camber_box box = picture_box(window, picture);
     camber_label_layout layout = block->layout;
     layout.domain = &block->domain;

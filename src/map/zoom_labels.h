@@ -29,7 +29,7 @@ void camber_zoom_labels_destroy(camber_zoom_labels *labels);
 
 /* Makes the items of the labels in a picture. square: of the finest level; it contains the picture. Call
  * camber_labels_free even after a failure. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
-camber_status camber_zoom_labels_draw(camber_zoom_labels *labels, const camber_label_square *square,
+camber_status camber_zoom_labels_draw(camber_zoom_labels *z, const camber_label_square *square,
                                       const camber_view *picture, camber_labels *drawn);
 
 /* Whether a picture has the labels of its zoom: the zoom is whole, the picture is neither turned nor tilted, nor wider

@@ -326,7 +326,7 @@ camber_status camber_tiles_engine_look(camber_tiles_engine *engine, int zoom, ui
 camber_status camber_tiles_engine_draw(camber_tiles_engine *engine, int zoom, uint32_t column, uint32_t row,
                                        uint8_t *rgba, camber_tiles_picture *picture) {
     const camber_metatile *metatile = NULL;
-    camber_tiles_picture made = {0};
+    camber_tiles_picture made = {.side = 1};
     if (engine->desc.meshes)
         return camber_fail(engine->context, CAMBER_ERROR_ARGUMENT,
                            "tiles: the engine's tiles are meshes; make one of pictures, or draw an archive");

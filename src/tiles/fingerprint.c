@@ -93,8 +93,8 @@ static uint64_t hash_labels(const camber_features *features, uint64_t hash) {
 
 uint64_t camber_features_get_hash(const camber_features *features) {
     camber_box box;
-    return hash_labels(features, camber_mix(hash_text(camber_features_hash(features, &box), camber_version()),
-                                            hash_style(features)));
+    return hash_labels(
+        features, camber_mix(hash_text(camber_features_hash(features, &box), camber_version()), hash_style(features)));
 }
 
 static uint64_t hash_options(const camber_tiles_engine *engine, const camber_tiles_draw_desc *desc) {

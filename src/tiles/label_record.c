@@ -164,13 +164,13 @@ camber_status camber_label_record_add_changed(const camber_label_record *before,
     if (count)
         memcpy(all, area->tiles, count * sizeof *all);
     for (size_t i = 0, k = 0; i < before->count || k < now->count;) {
-        const camber_label_entry *a = i < before->count ? before->entries + i : NULL;
-        const camber_label_entry *b = k < now->count ? now->entries + k : NULL;
-        const bool both = a && b && a->tile == b->tile, first = a && (!b || a->tile < b->tile);
-        if (!both || a->hash != b->hash)
-            all[count++] = first || both ? a->tile : b->tile;
-        i += both || first;
-        k += both || !first;
+        static const camber_label_entry last = {.tile = UINT64_MAX};
+        const camber_label_entry *a = i < before->count ? before->entries + i : &last;
+        const camber_label_entry *b = k < now->count ? now->entries + k : &last;
+        if (a->tile != b->tile || a->hash != b->hash)
+            all[count++] = a->tile < b->tile ? a->tile : b->tile;
+        i += a->tile <= b->tile;
+        k += b->tile <= a->tile;
     }
     if (count)
         qsort(all, count, sizeof *all, compare_numbers);

@@ -475,7 +475,9 @@ static void test_nothing_grows(void **state) {
     print_message("resident: %ld KB after %d frames, %ld KB after %d; %d scenes\n", early_kb, frames / 4, late_kb,
                   frames, v.scenes);
     assert_true(v.frame_count >= frames);
-    assert_true(IS_SANITIZED || late_kb - early_kb < 4096); /* AddressSanitizer keeps what is freed for a while */
+    /* Outlines of glyphs are kept, a few MB, and how soon depends on how fast scenes are made. AddressSanitizer keeps what
+     * is freed for a while. */
+    assert_true(IS_SANITIZED || late_kb - early_kb < 12288);
     close_viewer(&v);
 }
 

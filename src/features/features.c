@@ -111,9 +111,9 @@ void camber_features_destroy(camber_features *features) {
 }
 
 uint64_t camber_features_key(const camber_features *f) {
-    const uint64_t values[] = {(uintptr_t)f->style, f->restyles,         f->point_count, f->polyline_count,
-                               f->feature_count,    f->class_count,      f->value_count, (uintptr_t)f->sprites,
-                               (uintptr_t)f->fonts, (uintptr_t)f->points};
+    /* Addresses would not do: new sprites or points may have those of the old ones. */
+    const uint64_t values[] = {f->changes,       f->point_count, f->polyline_count,
+                               f->feature_count, f->class_count, f->value_count};
     return camber_hash(CAMBER_HASH_START, values, sizeof values);
 }
 
@@ -123,6 +123,7 @@ void camber_features_release_points(camber_features *features) {
     features->importance = NULL;
     features->points = NULL;
     features->point_count = features->point_capacity = features->importance_capacity = 0;
+    features->changes++;
 }
 
 bool camber_features_get_bounds(const camber_features *features, double bounds[4]) {
@@ -260,6 +261,7 @@ void camber_features_reset(camber_features *features, const camber_features_mark
     camber_features_cut_attribution(features, mark->attribution_size);
     features->stats = mark->stats;
     features->source = mark->source;
+    features->changes++;
 }
 
 /* The low bits of FNV are weak for short keys, so the high bits are folded into them. */

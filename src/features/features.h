@@ -27,7 +27,8 @@ struct camber_features {
     camber_context *context;
     const camber_schema *schema; /* the schema of the style */
     const camber_style *style;   /* the style that draws the features; readers know only its schema */
-    size_t restyles;             /* how often it was replaced */
+    /* How often files were read, something was removed or replaced, or the style changed (camber_features_key). */
+    uint64_t changes;
 
     /* Web Mercator world coordinates: pairs x, y from 0 to 1; the origin is the north-west corner, y grows southwards.
      */

@@ -357,6 +357,7 @@ camber_status camber_features_merge_and_weigh(camber_features *features, size_t 
                                               camber_merge_rule rule) {
     const double start_ms = camber_now_ms();
     const bool directed = rule == CAMBER_MERGE_ANY && features->schema->directed;
+    features->changes++;
     camber_status status = camber_features_part_labels(features, first_polyline);
     if (status == CAMBER_OK && merges)
         status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);

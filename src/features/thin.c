@@ -55,6 +55,7 @@ camber_status camber_features_thin(camber_features *features, float least_import
         return CAMBER_OK;
     if (count_whole(f) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
+    f->changes++;
     /* A network ends a line at a point that is not finite, so the neighbours of such a point stay. before: the last
      * point before thinning, because its memory may already have been overwritten. */
     double before[2] = {0.0, 0.0};

@@ -143,6 +143,7 @@ camber_status camber_features_read_fonts(camber_features *features, const camber
     if (features->free_fonts)
         features->free_fonts(features);
     features->fonts = fonts;
+    features->changes++;
     features->fonts_user = files;
     features->free_fonts = free_fonts;
     camber_features_want_labels(features);

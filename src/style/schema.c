@@ -113,6 +113,6 @@ camber_status camber_features_restyle(camber_features *features, const camber_st
                            "style: it reads other properties or images than the previous style; read the files again");
     features->schema = &style->schema;
     features->style = style;
-    features->restyles++;
+    features->changes++;
     return CAMBER_OK;
 }

@@ -420,6 +420,7 @@ camber_status camber_features_read_sprites(camber_features *features, double rat
         return status;
     camber_sprites_destroy(features->sprites);
     features->sprites = sprites;
+    features->changes++;
     features->free_sprites = camber_sprites_destroy;
     return CAMBER_OK;
 }

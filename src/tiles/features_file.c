@@ -449,6 +449,7 @@ camber_status camber_features_load(camber_features *features, const camber_regio
         status = fail_damaged(&from);
     if (status == CAMBER_OK)
         status = load(&l, &head);
+    features->changes++;
     close(from.file);
     camber_free(context, l.importance);
     camber_free(context, l.points);

@@ -19,6 +19,7 @@ struct camber_painter {
     /* Only used by the painter's thread: */
     camber_map_source source;
     bool has_source;
+    const camber_style *style; /* that the source's features have now. NULL: not known */
     camber_tiles_engine *engines[CAMBER_MAP_SOURCE_THEMES][CAMBER_MAP_SOURCE_MOST_RATIO];
     camber_scene *scenes[CAMBER_MAP_SOURCE_THEMES];
     camber_mesh *mesh; /* for scenes */
@@ -54,6 +55,7 @@ static void take_next(camber_painter *painter) {
     close_source(painter);
     painter->source = next;
     painter->has_source = true;
+    painter->style = NULL;
     painter->prepared_zoom = FIRST_PREPARED_ZOOM;
 }
 
@@ -90,12 +92,17 @@ void camber_painter_put(camber_painter *painter, const camber_map_source *source
         before.close(before.owner);
 }
 
-/* Features can have only one style at a time. A map without themes keeps its own. */
+/* Features can have only one style at a time. A map without themes keeps its own. Features that already have the style
+ * are left as they are, because scenes keep what they know only as long as their features do not change. */
 static camber_status take_theme(camber_painter *painter, bool dark) {
     const camber_map_source *source = &painter->source;
     if (!source->styles[1])
         return dark ? CAMBER_ERROR_ARGUMENT : CAMBER_OK;
-    return camber_features_restyle(source->features, source->styles[dark]);
+    const camber_style *style = source->styles[dark];
+    const camber_status status = style == painter->style ? CAMBER_OK : camber_features_restyle(source->features, style);
+    if (status == CAMBER_OK)
+        painter->style = style;
+    return status;
 }
 
 /* ---- Tiles ---- */

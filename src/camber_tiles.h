@@ -255,7 +255,7 @@ typedef struct camber_tiles_draw_desc {
      * copied at the end. NULL: the points are kept. */
     camber_features *spent;
     /* A file that records which labels are in which tile. It is written once the archive is complete. With renew and
-     * tiles, it is read first, if it exists: tiles whose labels have changed since then are drawn, too, although they
+     * tiles, it must exist and is read first: tiles whose labels have changed since then are drawn, too, although they
      * are not listed. Not with shards or a schedule. NULL: nothing is recorded. */
     const char *label_record;
     /* Called as soon as no other process can write this output (camber_tiles_beside). NULL: not called. */
@@ -283,9 +283,9 @@ typedef struct camber_tiles_stats {
 /* Draws a pyramid of tiles into an archive. The archive's bytes depend on the features, the style, the engine's desc
  * except threads, and this desc. They do not depend on memory, on resuming, or, once shards are merged, on their
  * number. stats may be NULL.
- * Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_NOT_FOUND (renew: there is no archive), CAMBER_ERROR_INPUT (resume,
- * renew, schedule: another input, style, options or version; renew: an input outside the archive's bounds),
- * CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT, CAMBER_ERROR_DEVICE, CAMBER_ERROR_MEMORY. */
+ * Returns CAMBER_ERROR_ARGUMENT, CAMBER_ERROR_NOT_FOUND (renew: there is no archive, or no record of its labels),
+ * CAMBER_ERROR_INPUT (resume, renew, schedule: another input, style, options or version; renew: an input outside the
+ * archive's bounds), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT, CAMBER_ERROR_DEVICE, CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_tiles_draw(camber_tiles_engine *engine, const camber_tiles_draw_desc *desc,
                                            camber_tiles_stats *stats);
 

@@ -140,8 +140,9 @@ camber_status camber_label_record_read(camber_context *context, const char *path
     if (!(record->entries = camber_alloc(context, size_bytes, 1)))
         status = CAMBER_ERROR_MEMORY;
     else if (!parse(record, bytes, size_bytes))
-        status = camber_fail(context, CAMBER_ERROR_INPUT,
-                             "%s: not a record of labels, or damaged; remove it, and renew all tiles", path);
+        status =
+            camber_fail(context, CAMBER_ERROR_INPUT,
+                        "%s: not a record of labels, or damaged; draw the archive again with --label-record", path);
     camber_free(context, bytes);
     return status;
 }

@@ -466,7 +466,8 @@ static camber_status draw_archive(pyramid *p) {
     p->stats.write_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK && camber_archive_writer_is_done(p->writer)) {
         p->stats.done = true;
-        return CAMBER_OK;
+        /* an earlier run may have been stopped before it could write the record */
+        return p->labels.context ? camber_label_record_write(&p->labels, p->desc->label_record) : CAMBER_OK;
     }
     if (status == CAMBER_OK)
         status = draw_all(p);
@@ -589,11 +590,16 @@ static camber_status add_relabelled(pyramid *p) {
 /* Records the labels of the archive, which a run that renews tiles compares with those before it. */
 static camber_status record_labels(pyramid *p) {
     const camber_archive *there = p->renewed;
-    const bool lists = there && p->desc->tile_count, exists = access(p->desc->label_record, F_OK) == 0;
+    const bool lists = there && p->desc->tile_count;
     const double start_ms = camber_now_ms();
+    if (lists && access(p->desc->label_record, F_OK) != 0)
+        return camber_fail(p->context, CAMBER_ERROR_NOT_FOUND,
+                           "%s: no such record, so nothing says which labels have moved; draw the archive again with "
+                           "--label-record",
+                           p->desc->label_record);
     camber_status status = camber_label_record_make(p->engine, there ? there->min_zoom : p->area.min_zoom,
                                                     there ? there->max_zoom : p->area.max_zoom, &p->labels);
-    if (status == CAMBER_OK && lists && exists)
+    if (status == CAMBER_OK && lists)
         status = add_relabelled(p);
     p->stats.census_ms += camber_now_ms() - start_ms;
     return status;

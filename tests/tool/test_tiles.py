@@ -597,6 +597,11 @@ def test_renew_labels():
     expect(read("labels") == read("wanted"), "the record is not the new one")
     write("labels", read("labels")[:-3])
     tiles(*common, "-o", "map.mbtiles", "--renew", "list", "--label-record", "labels", status=65)
+    os.remove("labels")
+    tiles(*common, "-o", "map.mbtiles", "--renew", "list", "--label-record", "labels", status=66)
+    expect(not os.path.exists("labels"), "a record of labels that were not compared")
+    tiles(*common, "-o", "new.mbtiles", *RANGE, "--label-record", "labels", "--resume")
+    expect(read("labels") == read("wanted"), "a complete archive that is resumed has no record")
     tiles(*common, "-o", "x.mbtiles", "--shard", "1/2", "--label-record", "labels", status=2)
     tiles(*common, "-o", "x.mbtiles", "--no-labels", "--label-record", "labels", status=2)
 

@@ -218,10 +218,14 @@ static camber_status add_runs(camber_label_layout *layout, const camber_symbol *
 
 static camber_status add_form(camber_label_layout *layout, const camber_symbol *symbol, uint32_t *index) {
     camber_label_form form = {.icon = symbol->icon_image ? camber_label_find_image(layout, symbol->icon_image) : NULL,
-                              .sort_key = symbol->has_sort_key ? symbol->sort_key : 0.0};
+                              .sort_key = symbol->has_sort_key ? symbol->sort_key : 0.0,
+                              .text_margin_px = -1.0,
+                              .icon_margin_px = -1.0};
     if (form.icon)
         form.hash = camber_hash(CAMBER_HASH_START, symbol->icon_image, strlen(symbol->icon_image));
     camber_status status = find_rule(layout, symbol, form.icon, &form.rule);
+    if (status == CAMBER_OK)
+        form.look_hash = layout->rules[form.rule].hash;
     if (status == CAMBER_OK && symbol->section_count && symbol->text_size_px > 0.0)
         status = camber_label_text_make(layout, symbol, &form);
     if (status != CAMBER_OK || (!form.text && !form.icon))

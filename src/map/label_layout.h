@@ -30,7 +30,7 @@ typedef struct camber_label_rule {
     double offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
     size_t anchor_count;
     bool variable; /* texts are shaped about their centres */
-    uint64_t hash; /* of the symbol */
+    uint64_t hash; /* of the symbol, without the sections of its text */
 } camber_label_rule;
 
 /* How a run of a text is drawn. */
@@ -50,8 +50,10 @@ typedef struct camber_label_form {
     uint32_t run_count;
     const camber_sprite_image *icon;
     double sort_key;
-    double weight; /* of two labels with equal sort keys, the lighter is placed first */
-    uint64_t hash; /* of its words and its icon */
+    double weight;                         /* of two labels with equal sort keys, the lighter is placed first */
+    uint64_t hash;                         /* of its words and its icon */
+    uint64_t look_hash;                    /* of its rule, and of how each section of its text looks */
+    double text_margin_px, icon_margin_px; /* for camber_label_margin. Negative: not known yet */
 } camber_label_form;
 
 /* A line that labels follow. Its points are px of the map's plane, relative to its first point. */
@@ -76,7 +78,7 @@ typedef struct camber_label_window {
 } camber_label_window;
 
 #define CAMBER_LABEL_STEP_PX (1.0 / 4096.0)
-/* In a domain, no label is shown that reaches farther than this from its anchor. */
+/* In a domain, no label is shown whose shapes or pixels reach farther than this from its anchor. */
 #define CAMBER_LABEL_REACH_PX 512.0
 
 static inline double camber_label_snap(double px) {
@@ -199,6 +201,9 @@ void camber_label_text_shift(const camber_label_layout *layout, const camber_lab
 /* Returns the box of the icon, without padding. vertical and anchor describe the text that the icon is fitted to. */
 camber_box camber_label_icon_box(const camber_label_layout *layout, const camber_label_candidate *c, bool vertical,
                                  size_t anchor);
+/* Returns how far the pixels of a form's text or icon may be from the shapes that it takes up when labels collide, px.
+ */
+double camber_label_margin(camber_label_layout *layout, uint32_t form, bool of_text);
 /* Computes the bounds in the picture of a box in a frame. false: the box is not in front of the camera. */
 bool camber_label_bounds(const camber_label_layout *layout, const camber_label_frame *frame, const camber_box *box,
                          camber_box *bounds);

@@ -8,6 +8,8 @@
 
 /* Anchors that are nearer the horizon than this have no labels, as in MapLibre. */
 static const double LEAST_NEARNESS = 0.6;
+/* How much larger a halo is than its blur, and the border of an icon's image, px. */
+static const double BLUR_SCALE = 1.19, BORDER_PX = 2.0;
 
 static double depth_of(const camber_label_layout *layout, const double plane[2], double seen[2]) {
     return camber_lens_see(&layout->lens, plane, seen);
@@ -252,4 +254,48 @@ camber_box camber_label_icon_box(const camber_label_layout *layout, const camber
     const double x = s->icon_offset_px[0] * scale - share[0] * width;
     const double y = s->icon_offset_px[1] * scale - share[1] * height;
     return (camber_box){x, y, x + width, y + height};
+}
+
+/* ---- Pixels ---- */
+
+/* Returns how far a text's pixels may be from what it takes up when labels collide, em. */
+static double find_overhang(camber_fonts *fonts, const camber_text *text, bool along) {
+    double most = 0.0;
+    for (size_t i = 0; text && i < text->glyph_count; i++) {
+        const camber_text_glyph *g = text->glyphs + i;
+        camber_outline o;
+        if (g->glyph == CAMBER_NO_GLYPH || camber_fonts_get_outline(fonts, g->glyph, 0.0f, &o) != CAMBER_OK)
+            continue;
+        const double s = (double)g->scale, x = (double)g->x, y = (double)g->y;
+        const double left = x + s * (double)(g->turned ? -o.bottom : o.left);
+        const double right = x + s * (double)(g->turned ? -o.top : o.right);
+        const double top = y + s * (double)(g->turned ? o.left : o.top);
+        const double bottom = y + s * (double)(g->turned ? o.right : o.bottom);
+        if (along)
+            most = fmax(most, fmax(fmax(fabs(top), fabs(bottom)), fmax(right - left, (double)g->advance)));
+        else
+            most = fmax(most, fmax(fmax((double)text->left - left, right - (double)text->right),
+                                   fmax((double)text->top - top, bottom - (double)text->bottom)));
+    }
+    return most;
+}
+
+static double find_halo(const camber_symbol_part *part) {
+    const bool drawn = part->halo_width_px > 0.0 && part->halo_color.a > 0.0f;
+    return (drawn ? part->halo_width_px + BLUR_SCALE * fmax(part->halo_blur_px, 0.0) : 0.0) -
+           fmin(fmin(part->padding_px[0], part->padding_px[1]),
+                fmin(fmin(part->padding_px[2], part->padding_px[3]), 0.0));
+}
+
+double camber_label_margin(camber_label_layout *layout, uint32_t form, bool of_text) {
+    camber_label_form *f = layout->forms + form;
+    const camber_label_rule *rule = layout->rules + f->rule;
+    double *margin = of_text ? &f->text_margin_px : &f->icon_margin_px;
+    if (*margin >= 0.0)
+        return *margin;
+    *margin = BORDER_PX + find_halo(of_text ? &rule->symbol.text : &rule->symbol.icon);
+    if (of_text)
+        *margin += rule->text_px * fmax(find_overhang(layout->fonts, f->text, rule->text_along),
+                                        find_overhang(layout->fonts, f->vertical, rule->text_along));
+    return *margin;
 }

@@ -290,6 +290,23 @@ static void hash_words(const camber_symbol *symbol, camber_label_form *form) {
     form->hash = hash;
 }
 
+/* Adds how the sections of a text look, which its rule does not say. */
+static void hash_looks(const camber_symbol *symbol, camber_label_form *form) {
+    uint64_t hash = form->look_hash;
+    for (size_t i = 0; i < symbol->section_count; i++) {
+        const camber_symbol_section *s = symbol->sections + i;
+        const char *shown = s->image ? s->image : s->text ? s->text : "";
+        const double numbers[] = {s->image != NULL, s->scale, s->align, (double)s->font_count, s->has_color};
+        hash = camber_hash(hash, numbers, sizeof numbers);
+        if (s->has_color)
+            hash = camber_hash(hash, &s->color, sizeof s->color);
+        hash = camber_hash(hash, shown, strlen(shown) + 1);
+        for (size_t f = 0; f < s->font_count; f++)
+            hash = camber_hash(hash, s->fonts[f], strlen(s->fonts[f]) + 1);
+    }
+    form->look_hash = hash;
+}
+
 camber_status camber_label_text_make(camber_label_layout *layout, const camber_symbol *symbol,
                                      camber_label_form *form) {
     const camber_label_rule *rule = layout->rules + form->rule;
@@ -307,6 +324,7 @@ camber_status camber_label_text_make(camber_label_layout *layout, const camber_s
     if (status != CAMBER_OK || !form->text)
         return status;
     hash_words(symbol, form);
+    hash_looks(symbol, form);
     const bool down =
         rule->text_along ? symbol->text.keep_upright : symbol->vertical && symbol->placement == CAMBER_SYMBOL_POINT;
     if (!down || !may_be_vertical(symbol))

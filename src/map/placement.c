@@ -58,7 +58,7 @@ typedef struct tried {
 typedef struct ordered {
     const camber_label_candidate *candidate;
     double keys[3]; /* the sort key, the order in the layer, the weight */
-    uint64_t rule;  /* a hash of the rule decides between labels of the same words at the same place */
+    uint64_t look;  /* a hash that decides between labels of the same words at the same place */
 } ordered;
 
 static int compare(const void *a, const void *b) {
@@ -73,8 +73,8 @@ static int compare(const void *a, const void *b) {
         return c->x < d->x ? -1 : 1;
     if (c->y < d->y || c->y > d->y)
         return c->y < d->y ? -1 : 1;
-    if (p->rule != q->rule)
-        return p->rule < q->rule ? -1 : 1;
+    if (p->look != q->look)
+        return p->look < q->look ? -1 : 1;
     return c < d ? -1 : c > d;
 }
 
@@ -96,8 +96,7 @@ static ordered *sort_layer(const camber_label_layout *layout, const camber_layou
             order = c->feature;
         const bool by_key = s->has_sort_key && s->order != CAMBER_SYMBOL_ORDER_VIEWPORT_Y;
         const camber_label_form *form = layout->forms + c->form;
-        list[i] =
-            (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}, camber_label_rule_of(layout, c)->hash};
+        list[i] = (ordered){c, {by_key ? form->sort_key : 0.0, order, form->weight}, form->look_hash};
     }
     if (list)
         qsort(list, layer->candidate_count, sizeof *list, compare);
@@ -199,9 +198,10 @@ static bool crosses_edge(const placer *p, const camber_obstacle *shape) {
            (shape->x0 < 0.0 || shape->y0 < 0.0 || shape->x1 > (double)view->width || shape->y1 > (double)view->height);
 }
 
-/* Whether a shape that is relative to its label's anchor reaches too far from it, or around the world. */
-static bool reaches_too_far(const placer *p, const camber_obstacle *shape) {
-    const double reach = fmin(CAMBER_LABEL_REACH_PX, 0.5 * p->domain->world_px);
+/* Whether a shape that is relative to its label's anchor reaches too far from it, or around the world. Pixels may be
+ * outside the shape by the margin. */
+static bool reaches_too_far(const placer *p, const camber_obstacle *shape, double margin) {
+    const double reach = fmin(CAMBER_LABEL_REACH_PX, 0.5 * p->domain->world_px) - margin;
     return !(shape->x0 > -reach && shape->y0 > -reach && shape->x1 < reach && shape->y1 < reach);
 }
 
@@ -223,13 +223,14 @@ static bool is_free(placer *p, size_t first, camber_symbol_overlap overlap, bool
     return held;
 }
 
-/* Adds a shape of a candidate's label. In a domain it is relative to the anchor. *added is false if it is not allowed.
- */
-static camber_status put_shape(placer *p, const camber_label_candidate *c, camber_obstacle shape, bool *added) {
+/* Adds a shape of a candidate's text or icon. In a domain it is relative to the anchor. *added is false if it is not
+ * allowed. */
+static camber_status put_shape(placer *p, const camber_label_candidate *c, bool of_text, camber_obstacle shape,
+                               bool *added) {
     if (p->domain) {
         shape = (camber_obstacle){camber_label_snap(shape.x0), camber_label_snap(shape.y0), camber_label_snap(shape.x1),
                                   camber_label_snap(shape.y1), camber_label_snap(shape.radius)};
-        *added = !reaches_too_far(p, &shape);
+        *added = !reaches_too_far(p, &shape, camber_label_margin(p->layout, c->form, of_text));
         if (!*added)
             return CAMBER_OK;
         shape.x0 += c->x;
@@ -241,16 +242,17 @@ static camber_status put_shape(placer *p, const camber_label_candidate *c, cambe
     return add_shape(p, shape);
 }
 
-static camber_status add_box(placer *p, const camber_label_candidate *c, const camber_label_frame *frame,
-                             camber_box box, const double padding[4], bool *added) {
-    const double ratio = p->layout->view->ratio;
+static camber_status add_box(placer *p, const camber_label_candidate *c, const camber_label_frame *frame, bool of_text,
+                             camber_box box, bool *added) {
+    const camber_symbol *s = &camber_label_rule_of(p->layout, c)->symbol;
+    const double *padding = of_text ? s->text.padding_px : s->icon.padding_px, ratio = p->layout->view->ratio;
     const camber_box padded = {box.x0 - padding[3] * ratio, box.y0 - padding[0] * ratio, box.x1 + padding[1] * ratio,
                                box.y1 + padding[2] * ratio};
     camber_box b;
     *added = camber_label_bounds(p->layout, frame, &padded, &b);
     if (!*added)
         return CAMBER_OK;
-    return put_shape(p, c, (camber_obstacle){b.x0, b.y0, b.x1, b.y1, 0.0}, added);
+    return put_shape(p, c, of_text, (camber_obstacle){b.x0, b.y0, b.x1, b.y1, 0.0}, added);
 }
 
 /* ---- Text ---- */
@@ -276,7 +278,8 @@ static camber_status add_circles(placer *p, const camber_label_candidate *c, con
         if (track->flat && !(camber_lens_see(&p->layout->lens, at, at) > 0.0))
             continue;
         bool added;
-        if (put_shape(p, c, (camber_obstacle){at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius, radius},
+        if (put_shape(p, c, true,
+                      (camber_obstacle){at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius, radius},
                       &added) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
         *fits &= added;
@@ -306,8 +309,8 @@ static camber_status try_anchor(placer *p, const camber_label_candidate *c, camb
     const camber_label_frame frame = camber_label_text_frame(p->layout, c);
     const size_t first = p->shape_count = text->first_shape;
     bool added;
-    camber_status status = add_box(p, c, &frame, camber_label_text_box(p->layout, c, text->vertical, text->anchor),
-                                   s->text.padding_px, &added);
+    camber_status status =
+        add_box(p, c, &frame, true, camber_label_text_box(p->layout, c, text->vertical, text->anchor), &added);
     if (status != CAMBER_OK || !added)
         return status;
     text->placed = is_free(p, first, overlap, s->avoid_edges);
@@ -316,7 +319,7 @@ static camber_status try_anchor(placer *p, const camber_label_candidate *c, camb
         return CAMBER_OK;
     const camber_label_frame about = camber_label_icon_frame(p->layout, c);
     const camber_box icon = camber_label_icon_box(p->layout, c, text->vertical, text->anchor);
-    status = add_box(p, c, &about, icon, s->icon.padding_px, &added);
+    status = add_box(p, c, &about, false, icon, &added);
     text->placed = status == CAMBER_OK && added && is_free(p, first + 1, overlap, s->avoid_edges);
     p->shape_count = first + 1;
     return status;
@@ -371,7 +374,7 @@ static camber_status try_icon(placer *p, const camber_label_candidate *c, const 
     const bool vertical = text->vertical && form->vertical;
     bool added;
     const camber_status status =
-        add_box(p, c, &frame, camber_label_icon_box(p->layout, c, vertical, text->anchor), s->icon.padding_px, &added);
+        add_box(p, c, &frame, false, camber_label_icon_box(p->layout, c, vertical, text->anchor), &added);
     icon->placed = status == CAMBER_OK && added && is_free(p, icon->first_shape, s->icon.overlap, s->avoid_edges);
     icon->shape_count = icon->placed ? 1 : 0;
     p->shape_count = icon->first_shape + icon->shape_count;
@@ -436,7 +439,7 @@ static camber_status take_all_boxes(placer *p, camber_label_candidate *c, bool o
             p->shape_count = 0;
             const camber_box box = of_text ? camber_label_text_box(p->layout, c, down == 1, i)
                                            : camber_label_icon_box(p->layout, c, down == 1, i);
-            status = add_box(p, c, &frame, box, part->padding_px, &added);
+            status = add_box(p, c, &frame, of_text, box, &added);
             if (status == CAMBER_OK && added)
                 status = take(p, &(tried){.shape_count = p->shape_count}, part, c);
         }

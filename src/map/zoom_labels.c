@@ -22,8 +22,6 @@ static const double WORLD_PX = 512.0;
 static const double FIRST_MARGIN_PX = 1.75 * CAMBER_LABEL_REACH_PX, WIDER = 2.0;
 /* The tolerance to which lines of labels are simplified, CSS px. */
 static const double SIMPLIFY_PX = 0.25;
-/* How much larger a halo is than its blur, and the border of an icon's image, px. */
-static const double BLUR_SCALE = 1.19, BORDER_PX = 2.0;
 
 typedef struct label_block label_block;
 struct label_block {
@@ -105,54 +103,24 @@ static unsigned find_copies(const label_block *block, const camber_box *label, c
 
 /* ---- Pixels of labels ---- */
 
-/* Returns how far a text's pixels may be from what it takes up when labels collide, em. */
-static double find_overhang(camber_fonts *fonts, const camber_text *text, bool along) {
-    double most = 0.0;
-    for (size_t i = 0; text && i < text->glyph_count; i++) {
-        const camber_text_glyph *g = text->glyphs + i;
-        camber_outline o;
-        if (g->glyph == CAMBER_NO_GLYPH || camber_fonts_get_outline(fonts, g->glyph, 0.0f, &o) != CAMBER_OK)
-            continue;
-        const double s = (double)g->scale, x = (double)g->x, y = (double)g->y;
-        const double left = x + s * (double)(g->turned ? -o.bottom : o.left);
-        const double right = x + s * (double)(g->turned ? -o.top : o.right);
-        const double top = y + s * (double)(g->turned ? o.left : o.top);
-        const double bottom = y + s * (double)(g->turned ? o.right : o.bottom);
-        if (along)
-            most = fmax(most, fmax(fmax(fabs(top), fabs(bottom)), fmax(right - left, (double)g->advance)));
-        else
-            most = fmax(most, fmax(fmax((double)text->left - left, right - (double)text->right),
-                                   fmax((double)text->top - top, bottom - (double)text->bottom)));
-    }
-    return most;
-}
-
-static double find_halo(const camber_symbol_part *part) {
-    return fmax(part->halo_width_px, 0.0) + BLUR_SCALE * fmax(part->halo_blur_px, 0.0) -
-           fmin(fmin(part->padding_px[0], part->padding_px[1]),
-                fmin(fmin(part->padding_px[2], part->padding_px[3]), 0));
-}
-
-/* Returns a box around the pixels that a label draws. */
-static camber_box find_pixels(const camber_label_layout *layout, const camber_label_candidate *c) {
-    const camber_label_form *form = layout->forms + c->form;
-    const camber_label_rule *rule = layout->rules + form->rule;
-    const bool along = rule->text_along && c->line != CAMBER_NO_PATH;
-    double margin = BORDER_PX;
+/* Returns a box around the pixels that a label draws, none of which is out of reach. */
+static camber_box find_pixels(camber_label_layout *layout, const camber_label_candidate *c) {
+    const double reach = CAMBER_LABEL_REACH_PX;
+    double margin = 0.0;
     if (c->shows_icon)
-        margin = fmax(margin, BORDER_PX + find_halo(&rule->symbol.icon));
+        margin = fmax(margin, camber_label_margin(layout, c->form, false));
     if (c->shows_text)
-        margin = fmax(margin, BORDER_PX + find_halo(&rule->symbol.text) +
-                                  rule->text_px * fmax(find_overhang(layout->fonts, form->text, along),
-                                                       find_overhang(layout->fonts, form->vertical, along)));
-    return widen(&c->box, margin);
+        margin = fmax(margin, camber_label_margin(layout, c->form, true));
+    const camber_box wide = widen(&c->box, margin);
+    return (camber_box){fmax(wide.x0, c->x - reach), fmax(wide.y0, c->y - reach), fmin(wide.x1, c->x + reach),
+                        fmin(wide.y1, c->y + reach)};
 }
 
 /* ---- Placing a block ---- */
 
 /* Whether all labels that may touch the block are settled. */
-static bool is_settled(const label_block *block) {
-    const camber_label_layout *l = &block->layout;
+static bool is_settled(label_block *block) {
+    camber_label_layout *l = &block->layout;
     for (size_t i = 0; i < l->candidate_count; i++) {
         const camber_label_candidate *c = l->candidates + i;
         if (!c->unsettled || c->box.x0 > c->box.x1)
@@ -506,7 +474,7 @@ static uint64_t hash_label(const camber_label_layout *l, const camber_label_cand
     const camber_label_form *form = l->forms + c->form;
     const uint64_t shows =
         (uint64_t)c->shows_text | (uint64_t)c->shows_icon << 1 | (uint64_t)c->vertical << 2 | (uint64_t)c->anchor << 8;
-    uint64_t hash = camber_mix(camber_mix(c->rank, l->rules[form->rule].hash), shows);
+    uint64_t hash = camber_mix(camber_mix(c->rank, form->look_hash), shows);
     if (c->line == CAMBER_NO_PATH)
         return hash;
     const camber_label_line *line = l->lines + c->line;

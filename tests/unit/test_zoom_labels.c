@@ -300,6 +300,29 @@ static void test_too_long(void **state) {
     close_town(t);
 }
 
+/* Pixels may reach farther than the shapes that labels take up. A halo that does is as if the label were too long; one
+ * that is not seen does not count. */
+static void test_too_wide(void **state) {
+    (void)state;
+    static const char *const halos[] = {"450", "600", "1e9", "1e9,\"text-halo-color\":\"rgba(0,0,0,0)\""};
+    static const size_t shown[] = {1, 0, 0, 1};
+    for (size_t i = 0; i < sizeof halos / sizeof *halos; i++) {
+        char layers[256];
+        snprintf(layers, sizeof layers,
+                 "{\"id\":\"names\",\"type\":\"symbol\",\"layout\":{\"text-field\":[\"get\",\"name\"]},\"paint\":{"
+                 "\"text-halo-color\":\"#fff\",\"text-halo-width\":%s}}",
+                 halos[i]);
+        town *t = open_town(layers);
+        add_point(t, "Short", 300.0, 600.0);
+        placed_town *p = place_town(t, ALL_LEVEL, SIZE_MAX);
+        camber_labels labels = draw(p, 8, 16, SHOWN, 1.0);
+        assert_int_equal(labels.label_count, shown[i]);
+        camber_labels_free(&labels);
+        free_placed(p);
+        close_town(t);
+    }
+}
+
 /* ---- Lists ---- */
 
 enum { MOST_LISTED = 4096 };
@@ -347,6 +370,44 @@ static void test_list(void **state) {
     close_town(t);
 }
 
+/* Returns how the only label of a town looks whose text is made by this expression. */
+static uint64_t look_of(const char *text) {
+    static list l;
+    const camber_box world = {0.0, 0.0, 1.0, 1.0};
+    char layers[512];
+    snprintf(layers, sizeof layers, "{\"id\":\"names\",\"type\":\"symbol\",\"layout\":{\"text-field\":%s}}", text);
+    town *t = open_town(layers);
+    add_point(t, "Name", 300.0, 600.0);
+    placed_town *p = place_town(t, TILE_LEVEL, SIZE_MAX);
+    l.count = 0;
+    assert_int_equal(camber_zoom_labels_list(p->labels, &world, take, &l), CAMBER_OK);
+    assert_int_equal(l.count, 1);
+    free_placed(p);
+    close_town(t);
+    return l.looks[0];
+}
+
+/* A label whose words stay the same is another one if a section of its text looks different. */
+static void test_sections(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "[\"format\",\"A\",{},\"b\",{}]",
+        "[\"format\",\"A\",{},\"b\",{\"text-color\":\"#f00\"}]",
+        "[\"format\",\"A\",{},\"b\",{\"text-color\":\"#00f\"}]",
+        "[\"format\",\"A\",{},\"b\",{\"font-scale\":1.5}]",
+        "[\"format\",\"A\",{},\"b\",{\"vertical-align\":\"top\"}]",
+        "[\"format\",\"A\",{},\"b\",{\"text-font\":[\"literal\",[\"Noto Sans Bold\"]]}]",
+    };
+    enum { COUNT = sizeof texts / sizeof *texts };
+    uint64_t looks[COUNT];
+    for (size_t i = 0; i < COUNT; i++) {
+        looks[i] = look_of(texts[i]);
+        assert_true(looks[i] == look_of(texts[i]));
+        for (size_t k = 0; k < i; k++)
+            assert_true(looks[i] != looks[k]);
+    }
+}
+
 /* Without memory placing fails, and leaves nothing behind. */
 static void test_memory(void **state) {
     (void)state;
@@ -384,6 +445,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_tiles),        cmocka_unit_test(test_seam),
                                        cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled),
                                        cmocka_unit_test(test_ratio),        cmocka_unit_test(test_too_long),
+                                       cmocka_unit_test(test_too_wide),     cmocka_unit_test(test_sections),
                                        cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,8 @@
 /* Tells whether a label would cover others.
  *
- * Input: shapes, one after the other. Output: whether a shape is free. Main idea: a grid of cells, each with a list of
- * the shapes that touch it. */
+ * Input: shapes, one after the other. Output: whether a shape is free. Main idea: a grid of cells, each with two lists
+ * of the shapes that touch it: those of labels that must not overlap, and all others. Of labels that may overlap each
+ * other, many can be at one place, and these are not compared. */
 #include "map/collision.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ camber_status camber_collision_make(camber_context *context, camber_box bounds, 
     made.cell = fmax(cell, fmax(width, height) / MOST_CELLS_A_SIDE);
     made.columns = (size_t)(width / made.cell) + 1;
     made.rows = (size_t)(height / made.cell) + 1;
-    made.cells = camber_alloc_zero(context, made.columns * made.rows, sizeof *made.cells);
+    made.cells = camber_alloc_zero(context, 2 * made.columns * made.rows, sizeof *made.cells);
     *collision = made;
     return made.cells ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
@@ -25,7 +26,6 @@ void camber_collision_free(camber_collision *collision) {
     camber_free(collision->context, collision->cells);
     camber_free(collision->context, collision->entries);
     camber_free(collision->context, collision->shapes);
-    camber_free(collision->context, collision->overlaps);
 }
 
 /* ---- Shapes ---- */
@@ -52,11 +52,6 @@ bool camber_obstacles_meet(const camber_obstacle *a, const camber_obstacle *b) {
     return b->radius > 0.0 ? circle_meets_box(b, a) : true;
 }
 
-/* Whether a new label may cover a label that is already there. */
-static bool may_overlap(camber_symbol_overlap made, camber_symbol_overlap there) {
-    return made == CAMBER_OVERLAP_ALWAYS || (made != CAMBER_OVERLAP_NEVER && there != CAMBER_OVERLAP_NEVER);
-}
-
 /* ---- The grid ---- */
 
 typedef struct cell_range {
@@ -74,6 +69,18 @@ static cell_range cells_of(const camber_collision *c, const camber_obstacle *sha
         cell_of(shape->x1 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y1 - c->bounds.y0, c->cell, c->rows)};
 }
 
+/* Returns the lists of the shapes of labels that must not overlap, or of all others. */
+static uint32_t *lists_of(const camber_collision *c, bool never) {
+    return c->cells + (never ? 0 : c->columns * c->rows);
+}
+
+static bool hits_list(const camber_collision *c, const camber_obstacle *shape, uint32_t first) {
+    for (uint32_t e = first; e; e = c->entries[e - 1].next)
+        if (camber_obstacles_meet(shape, c->shapes + c->entries[e - 1].shape))
+            return true;
+    return false;
+}
+
 bool camber_collision_holds(const camber_collision *collision, const camber_obstacle *shape) {
     const camber_box *b = &collision->bounds;
     return shape->x1 >= b->x0 && shape->x0 < b->x1 && shape->y1 >= b->y0 && shape->y0 < b->y1;
@@ -85,14 +92,12 @@ bool camber_collision_hits(const camber_collision *collision, const camber_obsta
     if (overlap == CAMBER_OVERLAP_ALWAYS || !camber_collision_holds(c, shape))
         return false;
     const cell_range range = cells_of(c, shape);
+    const uint32_t *never = lists_of(c, true), *others = lists_of(c, false);
     for (size_t y = range.y0; y <= range.y1; y++)
         for (size_t x = range.x0; x <= range.x1; x++)
-            for (uint32_t e = c->cells[y * c->columns + x]; e; e = c->entries[e - 1].next) {
-                const uint32_t there = c->entries[e - 1].shape;
-                if (camber_obstacles_meet(shape, c->shapes + there) &&
-                    !may_overlap(overlap, (camber_symbol_overlap)c->overlaps[there]))
-                    return true;
-            }
+            if (hits_list(c, shape, never[y * c->columns + x]) ||
+                (overlap == CAMBER_OVERLAP_NEVER && hits_list(c, shape, others[y * c->columns + x])))
+                return true;
     return false;
 }
 
@@ -102,20 +107,19 @@ camber_status camber_collision_add(camber_collision *collision, const camber_obs
     if (!camber_collision_holds(c, shape))
         return CAMBER_OK;
     const cell_range range = cells_of(c, shape);
+    uint32_t *lists = lists_of(c, overlap == CAMBER_OVERLAP_NEVER);
     const size_t added = (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1);
     if (c->entry_count + added >= UINT32_MAX)
         return camber_fail(c->context, CAMBER_ERROR_LIMIT, "labels: more than 2^32 places in the grid");
     if (!camber_grow(c->context, &c->shapes, &c->shape_capacity, c->shape_count + 1, sizeof *c->shapes) ||
-        !camber_grow(c->context, &c->overlaps, &c->overlap_capacity, c->shape_count + 1, sizeof *c->overlaps) ||
         !camber_grow(c->context, &c->entries, &c->entry_capacity, c->entry_count + added, sizeof *c->entries))
         return CAMBER_ERROR_MEMORY;
     for (size_t y = range.y0; y <= range.y1; y++)
         for (size_t x = range.x0; x <= range.x1; x++) {
-            uint32_t *cell = c->cells + y * c->columns + x;
+            uint32_t *cell = lists + y * c->columns + x;
             c->entries[c->entry_count++] = (camber_grid_entry){(uint32_t)c->shape_count, *cell};
             *cell = (uint32_t)c->entry_count;
         }
-    c->shapes[c->shape_count] = *shape;
-    c->overlaps[c->shape_count++] = (uint8_t)overlap;
+    c->shapes[c->shape_count++] = *shape;
     return CAMBER_OK;
 }

@@ -21,12 +21,13 @@ typedef struct camber_collision {
     camber_box bounds; /* shapes outside it are ignored */
     double cell;
     size_t columns, rows;
-    uint32_t *cells; /* by cell: the number of its first entry + 1; 0: none */
+    /* By cell: the number of its first entry + 1; 0: none. First the lists of shapes of labels that must not
+     * overlap, then the lists of all others. */
+    uint32_t *cells;
     camber_grid_entry *entries;
     size_t entry_count, entry_capacity;
     camber_obstacle *shapes;
-    uint8_t *overlaps; /* camber_symbol_overlap, by shape */
-    size_t shape_count, shape_capacity, overlap_capacity;
+    size_t shape_count, shape_capacity;
 } camber_collision;
 
 /* Returns CAMBER_ERROR_MEMORY. Call camber_collision_free even after a failure. */

@@ -502,11 +502,12 @@ static camber_status list_block(const listing *of, const camber_label_square *sq
         const camber_label_candidate *c = block->layout.candidates + i;
         const unsigned copies = find_copies(block, &c->box, &box);
         for (int n = 0; n < 3 && status == CAMBER_OK; n++) {
+            if (!(copies >> n & 1))
+                continue;
             const double shift = (n - 1) * block->domain.world_px;
             const camber_box moved = {c->box.x0 + shift, c->box.y0, c->box.x1 + shift, c->box.y1};
             const camber_shown_label shown = {scale(&moved, 1.0 / z->view.scale_px), hash_label(&block->layout, c)};
-            if (copies >> n & 1)
-                status = of->take(of->user, square, &shown);
+            status = of->take(of->user, square, &shown);
         }
     }
     return status;

@@ -11,6 +11,7 @@
 #include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 /* rasterize has the state of a tile on the stack. The usual 8 MB would count against a limit of address space. */
 enum { STACK_BYTES = 1 << 20 };
@@ -22,7 +23,8 @@ struct camber_cpu_pool {
     camber_context *context;
     size_t wanted; /* threads besides the one that launches */
     bool is_started;
-    size_t count; /* threads that run */
+    pid_t process; /* which has started them */
+    size_t count;  /* threads that run */
     pthread_mutex_t lock;
     pthread_cond_t begins, ends;
     /* These belong to the lock. */
@@ -86,6 +88,7 @@ static void start(camber_cpu_pool *pool) {
     pthread_attr_t attributes;
     sigset_t all, before;
     pool->is_started = true;
+    pool->process = getpid();
     if (pthread_attr_init(&attributes) != 0)
         return;
     pthread_attr_setstacksize(&attributes, STACK_BYTES);
@@ -110,15 +113,24 @@ camber_status camber_cpu_pool_create(camber_context *context, size_t threads, ca
     return CAMBER_OK;
 }
 
-void camber_cpu_pool_destroy(camber_cpu_pool *pool) {
-    if (!pool)
-        return;
+static void end_threads(camber_cpu_pool *pool) {
     pthread_mutex_lock(&pool->lock);
     pool->is_over = true;
     pthread_cond_broadcast(&pool->begins);
     pthread_mutex_unlock(&pool->lock);
     for (size_t i = 0; i < pool->count; i++)
         pthread_join(pool->threads[i], NULL);
+}
+
+/* A forked process has no threads of the pool, and its lock and conditions would wait for them. */
+void camber_cpu_pool_destroy(camber_cpu_pool *pool) {
+    if (!pool)
+        return;
+    if (pool->is_started && pool->process != getpid()) {
+        camber_free(pool->context, pool);
+        return;
+    }
+    end_threads(pool);
     pthread_cond_destroy(&pool->ends);
     pthread_cond_destroy(&pool->begins);
     pthread_mutex_destroy(&pool->lock);

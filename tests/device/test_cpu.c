@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fenv.h>
 #include <pthread.h>
+#include <signal.h>
 
 static int allowed = 1000;
 
@@ -24,13 +25,23 @@ enum { ITEMS_MAX = 5000 };
 typedef struct calls {
     size_t count;
     atomic_int of[ITEMS_MAX];
-    atomic_int wrong; /* calls with another count, or with the caller's rounding */
+    atomic_int wrong; /* calls with another count, with the caller's rounding, or with the wrong signals */
+    pthread_t caller;
 } calls;
+
+/* Faults reach each thread, and signals from outside only the caller's. */
+static bool takes_signals(const calls *c) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, NULL, &blocked);
+    return !sigismember(&blocked, SIGSEGV) && !sigismember(&blocked, SIGABRT) &&
+           !sigismember(&blocked, SIGTERM) == !!pthread_equal(c->caller, pthread_self());
+}
 
 static void count_items(const void *args, size_t first, size_t end, size_t count) {
     calls *c;
     memcpy(&c, args, sizeof c);
-    atomic_fetch_add(&c->wrong, count != c->count || end > count || first >= end || fegetround() != FE_TONEAREST);
+    atomic_fetch_add(&c->wrong, count != c->count || end > count || first >= end || fegetround() != FE_TONEAREST ||
+                                    !takes_signals(c));
     for (size_t i = first; i < end; i++)
         atomic_fetch_add(&c->of[i], 1);
 }
@@ -47,6 +58,7 @@ static void run_pool(size_t threads, int started) {
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         memset(&c, 0, sizeof c);
         c.count = counts[n];
+        c.caller = pthread_self();
         fesetround(FE_UPWARD);
         camber_cpu_pool_run(pool, &(camber_cpu_work){count_items, &args, counts[n]});
         assert_int_equal(fegetround(), FE_UPWARD);

@@ -83,17 +83,25 @@ static void *serve(void *user) {
     return NULL;
 }
 
-/* Starts the threads. They take no signals, which are for the caller's own threads. */
+/* The signals that threads of the pool leave to the caller's own. A fault has to reach the thread that made it: if it
+ * is blocked there, the process ends without calling its handler. */
+static void choose_signals(sigset_t *signals) {
+    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
+    sigfillset(signals);
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        sigdelset(signals, faults[i]);
+}
+
 static void start(camber_cpu_pool *pool) {
     pthread_attr_t attributes;
-    sigset_t all, before;
+    sigset_t blocked, before;
     pool->is_started = true;
     pool->process = getpid();
     if (pthread_attr_init(&attributes) != 0)
         return;
     pthread_attr_setstacksize(&attributes, STACK_BYTES);
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    choose_signals(&blocked);
+    pthread_sigmask(SIG_SETMASK, &blocked, &before);
     while (pool->count < pool->wanted && pthread_create(&pool->threads[pool->count], &attributes, serve, pool) == 0)
         pool->count++;
     pthread_sigmask(SIG_SETMASK, &before, NULL);

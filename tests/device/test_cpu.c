@@ -10,12 +10,15 @@
 #include <pthread.h>
 #include <signal.h>
 
-static int allowed = 1000;
+static int allowed = 1000, created;
 
 int __real_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user) {
-    return allowed-- > 0 ? __real_pthread_create(id, how, work, user) : EAGAIN;
+    if (allowed-- <= 0)
+        return EAGAIN;
+    created++;
+    return __real_pthread_create(id, how, work, user);
 }
 
 /* ---- The pool ---- */
@@ -80,6 +83,33 @@ static void test_pool(void **state) {
     run_pool(9, 3);
     run_pool(9, 0);
     camber_cpu_pool_destroy(NULL);
+}
+
+static void do_nothing(const void *args, size_t first, size_t end, size_t count) {
+    (void)args, (void)first, (void)end, (void)count;
+}
+
+/* The threads that the system has refused are there some launches later, and each of them once. */
+static void test_refused_threads(void **state) {
+    (void)state;
+    enum { THREADS = 9, REFUSED = 5 };
+    host h;
+    camber_context *context = host_context(&h);
+    camber_cpu_pool *pool = NULL;
+    assert_int_equal(camber_cpu_pool_create(context, THREADS, &pool), CAMBER_OK);
+    allowed = THREADS - 1 - REFUSED;
+    created = 0;
+    for (int n = 0; n < 100; n++) {
+        camber_cpu_pool_run(pool, &(camber_cpu_work){do_nothing, NULL, THREADS});
+        if (n == 20) {
+            assert_int_equal(created, THREADS - 1 - REFUSED);
+            assert_in_range(-allowed, 1, 5); /* it does not ask at each launch */
+            allowed = 1000;
+        }
+    }
+    assert_int_equal(created, THREADS - 1);
+    camber_cpu_pool_destroy(pool);
+    host_done(&h, context);
 }
 
 /* ---- Pictures ---- */
@@ -231,8 +261,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver), cmocka_unit_test(test_pool),
-                                       cmocka_unit_test(test_levels), cmocka_unit_test(test_fixed_kernels),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver),       cmocka_unit_test(test_pool),
+                                       cmocka_unit_test(test_refused_threads), cmocka_unit_test(test_levels),
+                                       cmocka_unit_test(test_fixed_kernels),   cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,10 +21,10 @@ enum { RUNS_LEFT = 4 };
 
 struct camber_cpu_pool {
     camber_context *context;
-    size_t wanted; /* threads besides the one that launches */
-    bool is_started;
-    pid_t process; /* which has started them */
-    size_t count;  /* threads that run */
+    size_t wanted;             /* threads besides the one that launches */
+    size_t shared, next_start; /* launches so far that had work for others; at which one threads are started */
+    pid_t process;             /* which has started them. 0: nobody yet */
+    size_t count;              /* threads that run */
     pthread_mutex_t lock;
     pthread_cond_t begins, ends;
     /* These belong to the lock. */
@@ -92,10 +92,14 @@ static void choose_signals(sigset_t *signals) {
         sigdelset(signals, faults[i]);
 }
 
+/* Starts the threads that are missing. If the system refuses some, launches 2, 4, 8 and so on try again: a limit may
+ * have been reached for a moment only, and refusals cost little. */
 static void start(camber_cpu_pool *pool) {
     pthread_attr_t attributes;
     sigset_t blocked, before;
-    pool->is_started = true;
+    if (pool->count == pool->wanted || ++pool->shared < pool->next_start)
+        return;
+    pool->next_start = 2 * pool->shared;
     pool->process = getpid();
     if (pthread_attr_init(&attributes) != 0)
         return;
@@ -134,7 +138,7 @@ static void end_threads(camber_cpu_pool *pool) {
 void camber_cpu_pool_destroy(camber_cpu_pool *pool) {
     if (!pool)
         return;
-    if (pool->is_started && pool->process != getpid()) {
+    if (pool->process && pool->process != getpid()) {
         camber_free(pool->context, pool);
         return;
     }
@@ -170,7 +174,7 @@ void camber_cpu_pool_run(camber_cpu_pool *pool, const camber_cpu_work *work) {
     const bool shares = work->count > 1 && pool->wanted > 0;
     fegetenv(&rounding);
     fesetenv(FE_DFL_ENV); /* whatever the caller's rounding is, the bytes are the same */
-    if (shares && !pool->is_started)
+    if (shares)
         start(pool);
     if (shares && pool->count > 0) {
         open_launch(pool, work);

@@ -26,16 +26,16 @@ enum { BACKENDS = sizeof backends / sizeof *backends };
  * devices without a name. Every use of OpenCL begins with camber_find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 
-/* The process that has set drivers up. 0: none yet. */
-static _Atomic(pid_t) process_of_drivers;
+/* The process that has looked for devices. 0: none yet. */
+static _Atomic(pid_t) process_of_devices;
 
 camber_status camber_check_process(camber_context *context) {
-    const pid_t process = atomic_load(&process_of_drivers);
+    const pid_t process = atomic_load(&process_of_devices);
     if (process == 0 || process == getpid())
         return CAMBER_OK;
     return camber_fail(
         context, CAMBER_ERROR_DEVICE,
-        "device: this process was forked after camber had set up OpenCL, which does not survive that; fork "
+        "device: this process was forked after camber had looked for devices; their threads do not survive that; fork "
         "before camber's first call, or start a new process (exec)");
 }
 
@@ -97,7 +97,7 @@ camber_status camber_find_devices(camber_context *context, const camber_device_d
             status = check_drivers(context, backends[i]);
         if (status != CAMBER_OK)
             break;
-        atomic_store(&process_of_drivers, getpid());
+        atomic_store(&process_of_devices, getpid());
         found->count +=
             backends[i]->find(found->list + found->count, CAMBER_DEVICES_MAX - found->count, &found->failed);
     }

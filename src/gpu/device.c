@@ -56,11 +56,10 @@ static camber_status choose_device(camber_device *device, const camber_device_de
                            "for an OpenCL device; there are: %s",
                            desc->work_group_size, desc->lanes, names);
     if (best < 0 && number)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                           "no device number %u matches '%s'; there are: %s", number, match ? match : "", names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device number %u matches '%s'; there are: %s",
+                           number, match ? match : "", names);
     if (best < 0)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device matches '%s'; there are: %s", match,
-                           names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device matches '%s'; there are: %s", match, names);
     return CAMBER_OK;
 }
 

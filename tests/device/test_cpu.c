@@ -9,6 +9,8 @@
 #include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 static int allowed = 1000, created;
 
@@ -187,6 +189,40 @@ static void test_no_driver(void **state) {
     host_done(&h, context);
 }
 
+/* Leaves the process some address space, which is too little for drivers. Returns the limit that was before. */
+static struct rlimit limit_memory(void) {
+    struct rlimit before, limit;
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%lu", &pages), 1);
+    fclose(file);
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    limit = before;
+    limit.rlim_cur = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + (500 << 20);
+    assert_int_equal(setrlimit(RLIMIT_AS, &limit), 0);
+    return before;
+}
+
+/* Runs before any test that asks a driver. A number says that all devices are looked for. */
+static void test_failing_drivers(void **state) {
+    (void)state;
+    static uint8_t rgba[PICTURE_BYTES];
+    host h;
+    camber_context *context = host_context(&h);
+    const struct rlimit before = limit_memory();
+    const camber_status any = draw_on(context, &(camber_device_desc){.number = 1}, rgba);
+    const size_t errors = h.errors;
+    const camber_status other = draw_on(context, &(camber_device_desc){.match = "opencl"}, rgba);
+    setrlimit(RLIMIT_AS, &before);
+    assert_int_equal(any, CAMBER_OK);
+    assert_int_equal(errors, 0);
+    assert_int_equal(other, CAMBER_ERROR_MEMORY);
+    assert_story(&h, "address space");
+    assert_false(is_loaded("libpocl"));
+    host_done(&h, context);
+}
+
 /* Draws on a level, or, if level is NULL, in OpenCL. Returns whether it is here. */
 static bool draw_level(const char *level, uint32_t threads, uint8_t *rgba) {
     host h;
@@ -230,6 +266,23 @@ static void test_levels(void **state) {
 
 /* ---- Failures ---- */
 
+static void test_unknown_level(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    const camber_device_info *info = NULL;
+    setenv("CAMBER_CPU", "x86-64-v9", 1);
+    assert_int_equal(camber_device_list(context, "camber x", 0, &info), CAMBER_OK);
+    unsetenv("CAMBER_CPU");
+    assert_null(info);
+    assert_int_equal(h.warnings, 1);
+    assert_non_null(strstr(h.warning, "CAMBER_CPU"));
+    assert_non_null(strstr(h.warning, "'x86-64-v9'"));
+    assert_non_null(strstr(h.warning, "none"));
+    h.warnings = 0;
+    host_done(&h, context);
+}
+
 static void test_fixed_kernels(void **state) {
     (void)state;
     host h;
@@ -261,7 +314,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver),       cmocka_unit_test(test_pool),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver),       cmocka_unit_test(test_failing_drivers),
+                                       cmocka_unit_test(test_unknown_level),   cmocka_unit_test(test_pool),
                                        cmocka_unit_test(test_refused_threads), cmocka_unit_test(test_levels),
                                        cmocka_unit_test(test_fixed_kernels),   cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);

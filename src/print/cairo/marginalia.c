@@ -2,8 +2,6 @@
  *
  * Input: the page and the view. Output: Cairo's paths and texts, in device px of the sheet. Everything on the map has a
  * light halo, so that it can be read on any style. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include "features/mercator.h"
@@ -341,5 +339,3 @@ camber_status camber_page_draw_marginalia(const camber_page *page, const camber_
     draw_frame(&m);
     return status == CAMBER_OK ? draw_titles(&m) : status;
 }
-
-#endif

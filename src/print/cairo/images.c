@@ -1,8 +1,6 @@
 /* Images of a page: those of the style, and layers that the renderer draws because Cairo cannot.
  *
  * Input: premultiplied RGBA8. Output: Cairo's surfaces, whose pixels are premultiplied words of ARGB. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 /* ---- Images of the style ---- */
@@ -122,5 +120,3 @@ void camber_page_map_free(camber_page_map *map) {
     camber_page_lines_free(&map->part);
     camber_page_fonts_free(&map->fonts);
 }
-
-#endif

@@ -4,8 +4,6 @@
  * idea: consecutive entries of one row are one path with one stroke or fill, as in the picture. A stroke of one path
  * covers each place once, so a translucent line does not darken where it crosses itself; several of them are drawn into
  * a group, which is then drawn with their alpha. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include <math.h>
@@ -535,5 +533,3 @@ camber_status camber_page_draw_map(camber_page_map *map) {
     }
     return status;
 }
-
-#endif

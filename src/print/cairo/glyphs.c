@@ -3,8 +3,6 @@
  * Input: glyphs of the text layer, by their numbers in a set of fonts. Main idea: Cairo gets the very font files that
  * the text was shaped with. Glyphs that come from a style's ranges of distances, and named instances of variable fonts,
  * have no such file; they become a font of Cairo's own kind, made of their outlines. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include "text/fonts.h"
@@ -309,5 +307,3 @@ camber_status camber_page_add_outlines(camber_page_fonts *f, cairo_t *cr, const 
     }
     return status;
 }
-
-#endif

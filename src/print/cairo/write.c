@@ -2,8 +2,6 @@
  *
  * Cairo keeps a page in memory until it is complete. Rows of a picture are drawn band by band, so a poster needs no
  * more memory than its bands: the renderer draws the map, and Cairo the rest into each band. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include <cairo-pdf.h>
@@ -268,5 +266,3 @@ camber_status camber_page_render(camber_page *page, camber_scene *scene, camber_
     camber_free(page->context, s.band);
     return status;
 }
-
-#endif

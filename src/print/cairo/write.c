@@ -149,18 +149,26 @@ typedef struct sheet {
 
 enum { BAND_ROWS = 64 };
 
-/* Draws what the page adds into a band, and sends it on. */
-static bool send_band(sheet *s, uint32_t row_count) {
-    const uint32_t width = s->page->info.width;
-    cairo_surface_t *surface =
-        cairo_image_surface_create_for_data(s->band, CAIRO_FORMAT_ARGB32, (int)width, (int)row_count, (int)(4 * width));
+/* Draws what the page adds into the columns of a band from x on. */
+static cairo_status_t draw_columns(const sheet *s, uint32_t x, uint32_t count, uint32_t row_count) {
+    cairo_surface_t *surface = cairo_image_surface_create_for_data(
+        s->band + 4 * (size_t)x, CAIRO_FORMAT_ARGB32, (int)count, (int)row_count, (int)(4 * s->page->info.width));
     cairo_t *cr = cairo_create(surface);
-    cairo_set_source_surface(cr, s->drawing, 0.0, -(double)s->next);
+    cairo_set_source_surface(cr, s->drawing, -(double)x, -(double)s->next);
     cairo_paint(cr);
     const cairo_status_t drawn = cairo_status(cr);
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     cairo_surface_destroy(surface);
+    return drawn;
+}
+
+/* Draws what the page adds into a band, and sends it on. */
+static bool send_band(sheet *s, uint32_t row_count) {
+    const uint32_t width = s->page->info.width;
+    cairo_status_t drawn = CAIRO_STATUS_SUCCESS;
+    for (uint32_t x = 0; x < width && drawn == CAIRO_STATUS_SUCCESS; x += CAMBER_PAGE_TILE_PX)
+        drawn = draw_columns(s, x, width - x < CAMBER_PAGE_TILE_PX ? width - x : CAMBER_PAGE_TILE_PX, row_count);
     if (drawn != CAIRO_STATUS_SUCCESS) {
         s->status = camber_fail(s->page->context, CAMBER_ERROR_MEMORY, "page: Cairo cannot draw a band of it (%s)",
                                 cairo_status_to_string(drawn));

@@ -17,50 +17,52 @@ static const float TOLERANCE_EM = 1.0f / 1024.0f;
 
 /* ---- Fonts from files ---- */
 
-/* A copy of a font file. Cairo keeps fonts in a cache for longer than the camber_fonts live, so nothing here may belong
- * to a context. */
-typedef struct font_copy {
+/* A font file as FreeType reads it, from HarfBuzz's bytes. Cairo keeps fonts in a cache for longer than the
+ * camber_fonts live, so nothing here may belong to a context. */
+typedef struct font_file {
+    hb_blob_t *bytes;
     FT_Library library;
     FT_Face face;
-    unsigned char bytes[];
-} font_copy;
+} font_file;
 
-static const cairo_user_data_key_t copy_key, outlines_key;
+static const cairo_user_data_key_t file_key, outlines_key;
 
-static void free_copy(void *user) {
-    font_copy *copy = user;
-    if (copy->face)
-        FT_Done_Face(copy->face);
-    if (copy->library)
-        FT_Done_FreeType(copy->library);
-    free(copy);
+static void close_file(void *user) {
+    font_file *file = user;
+    if (file->face)
+        FT_Done_Face(file->face);
+    if (file->library)
+        FT_Done_FreeType(file->library);
+    hb_blob_destroy(file->bytes);
+    free(file);
 }
 
-/* Returns NULL if FreeType does not read the font. */
-static cairo_font_face_t *open_file(hb_face_t *face) {
-    hb_blob_t *blob = hb_face_reference_blob(face);
+/* Makes Cairo's face of a file. Leaves it NULL if FreeType does not read the font.
+ * Returns CAMBER_ERROR_MEMORY, which is not logged. */
+static camber_status open_file(hb_face_t *face, cairo_font_face_t **made) {
+    font_file *file = calloc(1, sizeof *file);
+    if (!file)
+        return CAMBER_ERROR_MEMORY;
+    file->bytes = hb_face_reference_blob(face);
     unsigned size = 0;
-    const char *bytes = hb_blob_get_data(blob, &size);
-    font_copy *copy = size ? calloc(1, sizeof *copy + size) : NULL;
-    cairo_font_face_t *made = NULL;
-    if (!copy)
-        goto done;
-    memcpy(copy->bytes, bytes, size);
-    if (FT_Init_FreeType(&copy->library) ||
-        FT_New_Memory_Face(copy->library, copy->bytes, (FT_Long)size, (FT_Long)hb_face_get_index(face), &copy->face))
-        goto done;
-    made = cairo_ft_font_face_create_for_ft_face(copy->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
-    if (cairo_font_face_set_user_data(made, &copy_key, copy, free_copy) != CAIRO_STATUS_SUCCESS) {
-        cairo_font_face_destroy(made);
-        made = NULL;
-        goto done;
+    const char *bytes = hb_blob_get_data(file->bytes, &size);
+    FT_Error error = FT_Init_FreeType(&file->library);
+    if (!error)
+        error = FT_New_Memory_Face(file->library, (const FT_Byte *)bytes, (FT_Long)size,
+                                   (FT_Long)hb_face_get_index(face), &file->face);
+    if (error) {
+        close_file(file);
+        return FT_ERROR_BASE(error) == FT_Err_Out_Of_Memory ? CAMBER_ERROR_MEMORY : CAMBER_OK;
     }
-    copy = NULL; /* the face owns it */
-done:
-    if (copy)
-        free_copy(copy);
-    hb_blob_destroy(blob);
-    return made;
+    cairo_font_face_t *opened =
+        cairo_ft_font_face_create_for_ft_face(file->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
+    if (cairo_font_face_set_user_data(opened, &file_key, file, close_file) != CAIRO_STATUS_SUCCESS) {
+        cairo_font_face_destroy(opened);
+        close_file(file);
+        return CAMBER_ERROR_MEMORY;
+    }
+    *made = opened; /* which owns the file */
+    return CAMBER_OK;
 }
 
 /* ---- Fonts from outlines ---- */
@@ -119,9 +121,10 @@ static camber_status find_face(camber_page_fonts *f, uint32_t source, cairo_font
     }
     const camber_face *file = f->fonts->sources[source].face;
     cairo_font_face_t **found = f->faces + source;
+    camber_status status = CAMBER_OK;
     if (!*found && file && !is_instance(file->font))
-        *found = open_file(hb_font_get_face(file->font));
-    if (!*found)
+        status = open_file(hb_font_get_face(file->font), found);
+    if (!*found && status == CAMBER_OK)
         *found = make_outlines(f->fonts);
     *face = *found;
     return *found ? CAMBER_OK : camber_fail(f->context, CAMBER_ERROR_MEMORY, "page: no memory for a font");

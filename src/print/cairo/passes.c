@@ -64,11 +64,15 @@ static camber_status fill_path(camber_page_map *map, const camber_fill *fill, do
     }
     cairo_save(cr);
     status = set_pattern(map, fill);
-    if (status == CAMBER_OK && alpha >= 1.0 && !is_all) {
+    if (status == CAMBER_OK && is_all) {
+        cairo_paint_with_alpha(cr, alpha);
+    } else if (status == CAMBER_OK && alpha >= 1.0) {
         cairo_fill(cr);
     } else if (status == CAMBER_OK) {
-        if (!is_all)
-            cairo_clip(cr);
+        /* Not by a clip: if Cairo has no memory for one, it clips everything, and its status stays the same. */
+        cairo_push_group(cr);
+        cairo_fill(cr);
+        cairo_pop_group_to_source(cr);
         cairo_paint_with_alpha(cr, alpha);
     }
     cairo_restore(cr);

@@ -68,10 +68,10 @@ static camber_status draw_page(camber_page *page, camber_page_map *map, const ca
     cairo_scale(cr, POINTS_PER_INCH / info->dpi, POINTS_PER_INCH / info->dpi);
     set_font_options(cr);
     cairo_save(cr);
-    cairo_rectangle(cr, info->map_x, info->map_y, info->map_width, info->map_height);
-    cairo_clip(cr);
+    camber_status status = camber_page_clip(page, cr);
     cairo_translate(cr, (double)info->map_x - crop->x, (double)info->map_y - crop->y);
-    camber_status status = camber_page_draw_map(map);
+    if (status == CAMBER_OK)
+        status = camber_page_draw_map(map);
     cairo_restore(cr);
     if (status == CAMBER_OK)
         status = camber_page_draw_marginalia(page, &map->parts, &own, cr);

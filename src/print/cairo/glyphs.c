@@ -144,25 +144,12 @@ void camber_page_fonts_free(camber_page_fonts *f) {
 
 /* ---- Runs ---- */
 
-/* Whether bytes are whole characters of UTF-8, as Cairo requires. */
+/* Whether bytes are text that a page can say: whole characters, and none that control. */
 static bool is_text(const char *text, size_t size) {
-    for (size_t i = 0; i < size;) {
-        const unsigned char c = (unsigned char)text[i];
-        const size_t length = c < 0x80 ? 1 : c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
-        if (c < 0x20 || (c >= 0x80 && c < 0xc2) || !length || i + length > size)
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)text[i] < 0x20)
             return false;
-        uint32_t code = length == 1 ? c : c & (0x7fu >> length);
-        for (size_t k = 1; k < length; k++) {
-            if (((unsigned char)text[i + k] & 0xc0) != 0x80)
-                return false;
-            code = code << 6 | ((unsigned char)text[i + k] & 0x3f);
-        }
-        const uint32_t least = length == 3 ? 0x800 : length == 4 ? 0x10000 : 0;
-        if (code < least || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-            return false;
-        i += length;
-    }
-    return true;
+    return camber_page_is_utf8(text, size);
 }
 
 /* The glyphs of a run that have one face, and whose characters follow each other in the text: forwards or backwards. */

@@ -32,7 +32,7 @@ static void describe(const camber_page *page, cairo_surface_t *surface) {
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, creator);
     if (page->desc.title)
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, page->desc.title);
-    if (page->credit)
+    if (page->credit && camber_page_is_utf8(page->credit, strlen(page->credit)))
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_AUTHOR, page->credit);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
 }
@@ -89,8 +89,11 @@ static camber_status end_page(camber_page *page, cairo_t *cr, cairo_surface_t *s
         return CAMBER_ERROR_IO;
     if (failed == CAIRO_STATUS_SUCCESS)
         return CAMBER_OK;
-    return camber_fail(page->context, failed == CAIRO_STATUS_NO_MEMORY ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_IO,
-                       "page: Cairo cannot write it (%s)", cairo_status_to_string(failed));
+    const bool misused = failed == CAIRO_STATUS_INVALID_SIZE || failed == CAIRO_STATUS_INVALID_STRING;
+    const camber_status status = failed == CAIRO_STATUS_NO_MEMORY ? CAMBER_ERROR_MEMORY
+                                 : misused                        ? CAMBER_ERROR_ARGUMENT
+                                                                  : CAMBER_ERROR_IO;
+    return camber_fail(page->context, status, "page: Cairo cannot write it (%s)", cairo_status_to_string(failed));
 }
 
 camber_status camber_page_write(camber_page *page, camber_scene *scene, camber_renderer *renderer, camber_mesh *mesh,

@@ -421,7 +421,7 @@ static size_t end_of_alike(const camber_page_map *map, const camber_pass *pass, 
     return i;
 }
 
-/* Finds the end of the translucent lines that are flattened with the first one. *alike: they are drawn alike. */
+/* Finds the end of the translucent lines that are flattened with the first one. */
 static size_t end_of_flat(const camber_page_map *map, const camber_pass *pass, size_t first, size_t end) {
     const camber_paint *paint = paint_of(map, pass, first);
     size_t i = first + 1;

@@ -25,7 +25,8 @@ static cairo_status_t write_bytes(void *user, const unsigned char *bytes, unsign
     return s->refused ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
-/* A file must not depend on when it was made, unless SOURCE_DATE_EPOCH asks for a date. */
+/* A file must not depend on when it was made, so it always says the same date: Cairo's default is the time of day.
+ * SOURCE_DATE_EPOCH is not read. */
 static void describe(const camber_page *page, cairo_surface_t *surface) {
     char creator[64];
     snprintf(creator, sizeof creator, "camber %s", camber_version());

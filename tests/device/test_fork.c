@@ -1,4 +1,4 @@
-/* A child that was forked after drivers were set up is refused, and does not wait for threads that are the parent's. */
+/* A child that was forked after devices were looked for is refused, and does not wait for threads that are the parent's. */
 #include "core.h"
 
 #include <sys/wait.h>
@@ -112,7 +112,31 @@ static void refuses_children(void **state) {
     close_drawing(&d);
 }
 
+/* A child may destroy what it has inherited, as a language's run time does at its end. OpenCL's drivers may wait. */
+static void destroys_in_child(void **state) {
+    drawing d = {.error = ""};
+    int status = 0;
+    (void)state;
+    if (open_drawing(&d) != CAMBER_OK)
+        fail_msg("%s", d.error);
+    assert_int_equal(tessellate(&d), CAMBER_OK);
+    assert_int_equal(render(&d), CAMBER_OK);
+    const bool is_cpu = camber_device_get_info(d.device).fixed_kernels;
+    const pid_t child = is_cpu ? fork() : getpid();
+    if (child == 0) {
+        alarm(LONGEST_S);
+        close_drawing(&d);
+        _exit(0);
+    }
+    if (is_cpu)
+        assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    close_drawing(&d);
+    if (!is_cpu)
+        skip();
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_children)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_children), cmocka_unit_test(destroys_in_child)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

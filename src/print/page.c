@@ -128,7 +128,7 @@ bool camber_page_is_utf8(const char *text, size_t size) {
 static camber_status check_text(camber_context *context, const char *what, const char *text) {
     if (!text || camber_page_is_utf8(text, strlen(text)))
         return CAMBER_OK;
-    return camber_fail(context, CAMBER_ERROR_ARGUMENT, "page: the %s is not UTF-8; convert it", what);
+    return camber_fail(context, CAMBER_ERROR_ARGUMENT, "page: the %s is not text in UTF-8; convert it", what);
 }
 
 static bool copy_text(camber_page *page, const char **text) {

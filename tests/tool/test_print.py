@@ -127,6 +127,10 @@ expect(open(pdf, "rb").read() == open(render("again.pdf", *VIEW, "--title", "Mon
 report = json.loads(run("render", MONACO, "-o", os.path.join(FOLDER, "counted.pdf"), "-f", "--json", *VIEW).stdout)
 expect((report["width"], report["height"]) == (width, height), f"--json tells the sheet's size: {report}")
 expect(report["labels"] > 3 and report["output_bytes"] > 10000, f"--json counts {report}")
+odd = "Of \ufffe"  # a noncharacter, which Cairo does not write
+expect("the title is not text" in run("render", MONACO, "-o", os.path.join(FOLDER, "odd.pdf"), *VIEW, "--title", odd,
+                                      status=2).stderr, "a title that is no text")
+render("credit.pdf", *VIEW, "--attribution", odd)
 piped = subprocess.run([CAMBER, "render", MONACO, "-o", "-", "--format", "pdf", "-q", *VIEW], capture_output=True)
 expect(piped.returncode == 0 and piped.stdout.startswith(b"%PDF-"), "a PDF on standard output")
 

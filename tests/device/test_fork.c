@@ -1,4 +1,4 @@
-/* A child that was forked after drivers were set up is refused, and does not wait for threads that are the parent's. */
+/* A child that was forked after camber had looked for devices is refused, and does not wait for the parent's threads. */
 #include "core.h"
 
 #include <sys/wait.h>

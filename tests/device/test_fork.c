@@ -1,4 +1,4 @@
-/* A child that was forked after camber had looked for devices is refused, and does not wait for the parent's threads. */
+/* A child that was forked after camber had looked for devices is refused, and waits for no thread of its parent. */
 #include "core.h"
 
 #include <sys/wait.h>

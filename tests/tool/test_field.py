@@ -192,7 +192,7 @@ def check_told():
           "it reads highway, kind" in text and "--style" in text, text)
     text = said("render", late, *render, "--style", "none.json", "--center", "5,5", "--zoom", "3")
     check("none of it at zoom 3; it draws some from zoom 12 on" in text, text)
-    text = said("render", line, *render, "--bbox", "50,50,51,51")
+    text = said("render", line, *render, "--bbox", "50,50,50.1,50.1")
     check("nothing is in the view" in text and "longitudes come first" in text, text)
     text = said("render", empty, *render)
     check("no feature of" in text and "check that this is the file you mean" in text, text)

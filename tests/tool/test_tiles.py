@@ -742,7 +742,7 @@ def write_vector_tiles(path, layers):
 
 def test_schemas():
     """show tells the schema by the names of layers; and the style city draws it, or plainly what has none."""
-    water, motorway, plain = (0xa6, 0xcf, 0xdd), (0xe2, 0x72, 0x5b), (0x3f, 0x65, 0x95)
+    water, motorway, plain = (0xa6, 0xcf, 0xdd), (0xe5, 0x8c, 0x70), (0x3f, 0x65, 0x95)
     cases = {
         "OpenMapTiles": {"water": ("area", {"class": "lake"}), "transportation": ("line", {"class": "motorway"})},
         "Protomaps 4": {"earth": ("area", {"kind": "earth"}), "water": ("area", {"kind": "lake"}),

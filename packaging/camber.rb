@@ -37,7 +37,7 @@ class Camber < Formula
   def install
     system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCAMBER_TESTS=OFF", "-DCAMBER_WARM=OFF",
            "-DCAMBER_LIBDEFLATE=ON", "-DCAMBER_WEBP=ON", "-DCAMBER_SERVE=ON",
-           "-DCAMBER_LZ4=ON", "-DCAMBER_ZSTD=ON", "-DCAMBER_LZMA=ON", *std_cmake_args
+           "-DCAMBER_LZ4=ON", "-DCAMBER_ZSTD=ON", "-DCAMBER_LZMA=ON", "-DCAMBER_CAIRO=ON", *std_cmake_args
     system "cmake", "--build", "build"
     system "cmake", "--install", "build"
   end

@@ -340,8 +340,9 @@ CAMBER_API void camber_device_destroy(camber_device *device);
 typedef struct camber_warm_result {
     size_t programs;   /* programs in the share */
     size_t built;      /* programs that were built; the others were in the cache */
-    size_t kept;       /* programs that are in the folder now. 0 if the driver does not let its kernels be saved */
-    char folder[1024]; /* where they are; "": nowhere, because no folder can be written */
+    size_t kept;       /* programs that are in the folder now. 0 if the driver does not let its kernels be saved. All if
+                        * the device has fixed_kernels */
+    char folder[1024]; /* where they are; "": nowhere, because no folder can be written, or they are in the library */
 } camber_warm_result;
 
 /* Builds all kernels that the device can be asked for, and saves those that the cache lacks, so that later runs can

@@ -39,7 +39,7 @@ typedef struct camber_page_desc {
     /* Device px per CSS px: how large a style's widths and texts are on paper. 0: dpi / 96, so that a CSS px is 1/96
      * inch or 0.26 mm. */
     double ratio;
-    const char *title, *subtitle; /* below the map. NULL: none */
+    const char *title, *subtitle; /* below the map, UTF-8. NULL: none */
     bool scale_bar;               /* in the lower left corner; its length is true at the map's centre */
     bool north_arrow;             /* in the upper right corner */
     bool grid;                    /* meridians and parallels with their degrees */
@@ -51,12 +51,13 @@ typedef struct camber_page camber_page;
 
 /* Makes a page. The fonts' glyph function, if there is one, must outlive it.
  * Returns CAMBER_ERROR_ARGUMENT (a size, a margin or a resolution out of range; no room left for the map; more than
- * 65535 px on a side or 2^31 px in all; this build has no Cairo), CAMBER_ERROR_NOT_FOUND (a folder of fonts),
- * CAMBER_ERROR_MEMORY. */
+ * 65535 px on a side or 2^31 px in all; a title or subtitle that is not UTF-8; this build has no Cairo),
+ * CAMBER_ERROR_NOT_FOUND (a folder of fonts), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_page_create(camber_context *context, const camber_page_desc *desc, camber_page **page);
 CAMBER_API void camber_page_destroy(camber_page *page);
 
 /* Sets the credit of the data, which is shown in the map's lower right corner. The text is copied. NULL: none.
+ * Bytes that are not UTF-8 are shown as U+FFFD, and then the metadata of a PDF has no credit.
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_page_set_credit(camber_page *page, const char *credit);
 

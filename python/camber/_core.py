@@ -185,7 +185,7 @@ class Core:
     @staticmethod
     def _refuse_fork(process):
         if process not in (None, os.getpid()):
-            raise DeviceError("camber was used before this process was forked, and drivers do not survive a fork; "
+            raise DeviceError("camber was used before this process was forked, and its threads do not survive a fork; "
                               "use multiprocessing's start method spawn or forkserver")
 
     def __enter__(self):

@@ -1,10 +1,22 @@
+#define _GNU_SOURCE /* sched_getaffinity */
+
 #include "base/threads.h"
 
+#include <sched.h>
 #include <unistd.h>
 
+size_t camber_cores_count(void) {
+#ifdef __linux__
+    cpu_set_t cores; /* fails on machines with more than CPU_SETSIZE of them */
+    if (sched_getaffinity(0, sizeof cores, &cores) == 0)
+        return (size_t)CPU_COUNT(&cores);
+#endif
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online > 0 ? (size_t)online : 1;
+}
+
 size_t camber_threads_count(size_t asked) {
-    const long cores = asked ? 0 : sysconf(_SC_NPROCESSORS_ONLN);
-    const size_t wanted = cores > 0 ? (size_t)cores : asked ? asked : 1;
+    const size_t wanted = asked ? asked : camber_cores_count();
     return wanted < CAMBER_MOST_THREADS ? wanted : CAMBER_MOST_THREADS;
 }
 

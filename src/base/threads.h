@@ -19,8 +19,10 @@ typedef struct camber_threads {
     size_t count; /* threads that run */
 } camber_threads;
 
-/* Returns how many threads to use: as many as asked for, or one per core if asked is 0. The result is at least 1 and at
- * most CAMBER_MOST_THREADS. */
+/* Returns how many cores the process may use: those of its affinity, which containers and taskset limit. At least 1. */
+size_t camber_cores_count(void);
+/* Returns how many threads to use: as many as asked for, or one per core that the process may use if asked is 0. The
+ * result is at least 1 and at most CAMBER_MOST_THREADS. */
 size_t camber_threads_count(size_t asked);
 /* Starts count threads, each of which calls work(user, number) and ends when work returns. If the system cannot start
  * that many, fewer run. */

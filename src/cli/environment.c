@@ -1,8 +1,10 @@
 /* Prepares the process for drivers and libraries: environment variables, standard streams and file descriptors. It runs
  * before any thread starts, since setenv is safe only then. */
-#define _GNU_SOURCE
+#define _GNU_SOURCE /* CPU_SETSIZE */
 
 #include "cli/environment.h"
+
+#include "base/threads.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -31,10 +33,8 @@ static bool set_threads(uint32_t threads) {
  * container with some of the cores, or with more threads than cores. */
 static bool may_pin(void) {
 #ifdef __linux__
-    cpu_set_t cores;
     const long count = sysconf(_SC_NPROCESSORS_CONF);
-    if (count < 1 || count > CPU_SETSIZE || sched_getaffinity(0, sizeof cores, &cores) != 0 ||
-        CPU_COUNT(&cores) != (int)count)
+    if (count < 1 || count > CPU_SETSIZE || camber_cores_count() != (size_t)count)
         return false;
     for (size_t i = 0; i < sizeof POCL_THREADS / sizeof *POCL_THREADS; i++) {
         const char *text = getenv(POCL_THREADS[i]);

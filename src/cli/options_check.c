@@ -132,6 +132,12 @@ static int check_view(const camber_option_reader *p) {
     view->pitch_deg = isnan(options->pitch_deg) ? 0 : options->pitch_deg;
     if (view->width == 0)
         view->width = view->height = options->polylines ? 2048 : 1024;
+    return CAMBER_EXIT_DONE;
+}
+
+/* A sheet has set the view's size before this. */
+static int check_px(const camber_option_reader *p) {
+    const camber_view_desc *view = &p->options->view;
     const double width = floor(view->width * view->ratio + 0.5);
     const double height = floor(view->height * view->ratio + 0.5);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 || width * height > 2147483648.0)
@@ -250,6 +256,8 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
         status = check_draw(p);
     if (status == CAMBER_EXIT_DONE && writes)
         status = check_output(p);
+    if (status == CAMBER_EXIT_DONE && options->verb != CAMBER_VERB_TILES && options->verb != CAMBER_VERB_SERVE)
+        status = check_px(p);
     if (status == CAMBER_EXIT_DONE)
         status = check_plot(p);
     if (status == CAMBER_EXIT_DONE && options->junit && strcmp(options->junit, "-") == 0)

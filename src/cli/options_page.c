@@ -7,6 +7,7 @@
 #include "camber_print.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A margin of this part of the sheet's shorter side, unless --margin is given. */
@@ -15,13 +16,16 @@ static const double MM_PER_INCH = 25.4, CSS_PX_PER_INCH = 96.0, USUAL_DPI = 300.
 
 /* Parses WIDTHxHEIGHTmm. */
 static bool parse_sheet(const char *text, double mm[2]) {
-    char rest[8] = "";
+    char sides[2][16], *rest;
     int end = 0;
-    if (strspn(text, "0123456789.xXm") != strlen(text) ||
-        sscanf(text, "%lf%*1[xX]%lf%7s%n", mm, mm + 1, rest, &end) < 2)
+    if (sscanf(text, "%15[0-9.]%*1[xX]%15[0-9.]%n", sides[0], sides[1], &end) < 2)
         return false;
-    return (!*rest || strcmp(rest, "mm") == 0) && mm[0] >= 10.0 && mm[0] <= 20000.0 && mm[1] >= 10.0 &&
-           mm[1] <= 20000.0;
+    for (size_t i = 0; i < 2; i++) {
+        mm[i] = strtod(sides[i], &rest);
+        if (*rest || !(mm[i] >= 10.0 && mm[i] <= 20000.0))
+            return false;
+    }
+    return !text[end] || strcmp(text + end, "mm") == 0;
 }
 
 static bool is_given(const camber_options *options, const char *name) {

@@ -24,6 +24,15 @@ static double start_ms(const job *j) {
            j->times.write_ms;
 }
 
+/* Finds the picture's size: the sheet's, if there is one. */
+static void find_size(const job *j, uint32_t *width, uint32_t *height) {
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    const bool on_sheet = j->input.page != NULL;
+    const camber_page_info sheet = on_sheet ? camber_page_get_info(j->input.page) : (camber_page_info){0};
+    *width = on_sheet ? sheet.width : scene.width;
+    *height = on_sheet ? sheet.height : scene.height;
+}
+
 static int draw(job *j) {
     camber_session *session = j->session;
     int status = camber_output_open(&j->output, session->report, session->guard, session->options->output,
@@ -62,13 +71,14 @@ static int print_json(const job *j) {
     const camber_polylines_stats lines = j->input.drawn;
     (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
-    json_t *object =
-        json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
-                  camber_json_text(session->options->output), "width", (json_int_t)scene.width, "height",
-                  (json_int_t)scene.height, "output_bytes", camber_json_count(j->written_bytes), "longitude",
-                  scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
-                  "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
-                  session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
+    uint32_t width, height;
+    find_size(j, &width, &height);
+    json_t *object = json_pack(
+        "{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output", camber_json_text(session->options->output),
+        "width", (json_int_t)width, "height", (json_int_t)height, "output_bytes", camber_json_count(j->written_bytes),
+        "longitude", scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
+        "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
+        session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
@@ -164,8 +174,10 @@ static void print_text(const job *j) {
     camber_report *report = session->report;
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
+    uint32_t width, height;
+    find_size(j, &width, &height);
     camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,
-                      scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
+                      width, height, scene.zoom, scene.longitude, scene.latitude);
     print_counts(j, &scene);
     print_rings(j);
     camber_input_say_missing(&j->input);

@@ -1,11 +1,10 @@
 /* Runs info --warm: compiles and saves every kernel in advance. PoCL compiles one kernel at a time in a process, so
  * several processes compile a share of the kernels each. If one of them fails, this process compiles its share: it goes
  * through all kernels at the end, and prints the result. */
-#define _GNU_SOURCE /* sched_getaffinity */
-
 #include "cli/verbs.h"
 
-#include <sched.h>
+#include "base/threads.h"
+
 #include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -15,10 +14,8 @@
 enum { PROCESSES_MAX = 4 };
 
 static unsigned count_processes(const camber_options *options) {
-    cpu_set_t cores;
-    const int count = sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
-    const unsigned wanted = options->threads ? options->threads : (unsigned)count;
-    return wanted < PROCESSES_MAX ? wanted : PROCESSES_MAX;
+    const size_t wanted = camber_threads_count(options->threads);
+    return wanted < PROCESSES_MAX ? (unsigned)wanted : PROCESSES_MAX;
 }
 
 static camber_status warm_share(camber_session *session, unsigned share, unsigned shares, camber_warm_result *result) {
@@ -53,8 +50,9 @@ static void warm_side_by_side(camber_session *session) {
 
 static json_t *describe(camber_session *session, const camber_warm_result *result, double ms) {
     json_t *object = json_pack("{s:s, s:o, s:o, s:o, s:o}", "camber", camber_version(), "folder",
-                               camber_json_text(result->folder), "programs", camber_json_count(result->programs),
-                               "compiled", camber_json_count(result->built), "ms", camber_json_ms(ms));
+                               result->folder[0] ? camber_json_text(result->folder) : json_null(), "programs",
+                               camber_json_count(result->programs), "compiled", camber_json_count(result->built), "ms",
+                               camber_json_ms(ms));
     if (object)
         camber_session_describe(session, object);
     return object;
@@ -67,7 +65,8 @@ int camber_warm(camber_session *session) {
     const camber_status status = warm_share(session, 0, 1, &result);
     if (status != CAMBER_OK)
         return camber_report_status(session->report, status);
-    if (!result.folder[0])
+    const bool is_fixed = camber_device_get_info(session->device).fixed_kernels;
+    if (!is_fixed && !result.folder[0])
         return camber_report_fail(
             session->report, CAMBER_EXIT_CREATE,
             "kernels: there is no writable folder to keep them in; set XDG_CACHE_HOME or CAMBER_KERNELS to one");
@@ -79,6 +78,6 @@ int camber_warm(camber_session *session) {
     if (session->options->json)
         return camber_report_json(session->report, describe(session, &result, ms));
     printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", result.programs,
-           camber_device_get_info(session->device).name, ms / 1e3, result.folder);
+           camber_device_get_info(session->device).name, ms / 1e3, is_fixed ? "part of the library" : result.folder);
     return camber_report_flush(session->report);
 }

@@ -33,8 +33,9 @@ typedef struct camber_gpu_backend {
     bool counts_memory; /* buffers are made by the context's allocator, which counts them in the run's budget */
     /* Fails if the drivers would end the process when they are first called. NULL if there are none. */
     camber_status (*check_process)(camber_context *context);
-    /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. */
-    size_t (*find)(camber_found_device *found, size_t capacity, camber_failed_call *failed);
+    /* Finds devices, up to capacity, and returns how many. Sets *failed to the last call that failed, if any did. Warns
+     * if the environment asks for a device that is not here. */
+    size_t (*find)(camber_context *context, camber_found_device *found, size_t capacity, camber_failed_call *failed);
     /* Logs a call that failed during the search, and returns the status for its error code. */
     camber_status (*fail)(camber_context *context, const camber_failed_call *failed);
     /* Sets device->native and the fields that only the back end knows: rounds_correctly, host_memory, gl_context, and
@@ -80,8 +81,8 @@ typedef struct camber_found_devices {
 } camber_found_devices;
 
 /* find.c: finds the devices for a desc; NULL: all. Drivers are not asked if the processor itself is what the desc
- * wants. Fails in a forked child, and if drivers, when first called, would end the process or not fit into its memory.
- */
+ * wants. Fails in a forked child. Also if drivers, when first called, would end the process or not fit into its memory,
+ * unless the desc can have the processor. */
 camber_status camber_find_devices(camber_context *context, const camber_device_desc *desc, camber_found_devices *found);
 /* Returns whether match, as in camber_device_desc, names the device. */
 bool camber_device_matches(const camber_device_info *info, const char *match);

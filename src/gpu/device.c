@@ -31,7 +31,7 @@ static camber_status choose_device(camber_device *device, const camber_device_de
         return found.failed.backend->fail(device->context, &found.failed);
     if (found.count == 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                           "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd), "
+                           "no device: no OpenCL platform answers; install a driver (Debian: pocl-opencl-icd), "
                            "and let POCL_CACHE_DIR name a folder that PoCL can write to");
     char names[1024] = "";
     uint32_t seen = 0;
@@ -56,11 +56,10 @@ static camber_status choose_device(camber_device *device, const camber_device_de
                            "for an OpenCL device; there are: %s",
                            desc->work_group_size, desc->lanes, names);
     if (best < 0 && number)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                           "no OpenCL device number %u matches '%s'; there are: %s", number, match ? match : "", names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device number %u matches '%s'; there are: %s",
+                           number, match ? match : "", names);
     if (best < 0)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match,
-                           names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device matches '%s'; there are: %s", match, names);
     return CAMBER_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -26,16 +27,16 @@ enum { BACKENDS = sizeof backends / sizeof *backends };
  * devices without a name. Every use of OpenCL begins with camber_find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 
-/* The process that has set drivers up. 0: none yet. */
-static _Atomic(pid_t) process_of_drivers;
+/* The process that has looked for devices. 0: none yet. */
+static _Atomic(pid_t) process_of_devices;
 
 camber_status camber_check_process(camber_context *context) {
-    const pid_t process = atomic_load(&process_of_drivers);
+    const pid_t process = atomic_load(&process_of_devices);
     if (process == 0 || process == getpid())
         return CAMBER_OK;
     return camber_fail(
         context, CAMBER_ERROR_DEVICE,
-        "device: this process was forked after camber had set up OpenCL, which does not survive that; fork "
+        "device: this process was forked after camber had looked for devices; their threads do not survive that; fork "
         "before camber's first call, or start a new process (exec)");
 }
 
@@ -61,24 +62,42 @@ bool camber_device_matches(const camber_device_info *info, const char *match) {
            contains_ignoring_case(info->version, match);
 }
 
-/* Whether the devices found so far have the one that the desc wants, so that no driver has to be asked. Without a word
- * a GPU is wanted, if there is one. */
-static bool is_enough(const camber_device_desc *desc, const camber_found_devices *found) {
-    if (!desc || found->count == 0 || desc->number || desc->work_group_size || desc->lanes)
-        return false;
-    return desc->match ? camber_device_matches(&found->list[0].info, desc->match) : !camber_hardware_is_here();
+/* Whether the devices found without drivers have one that the desc can have. */
+static bool is_usable(const camber_device_desc *desc, const camber_found_devices *found) {
+    return desc && found->count > 0 && desc->number <= 1 && !desc->work_group_size && !desc->lanes &&
+           camber_device_matches(&found->list[0].info, desc->match);
 }
 
-/* Checks whether drivers can be asked for the first time. */
-static camber_status check_drivers(camber_context *context, const camber_gpu_backend *backend) {
+/* Whether the word can mean no device of a driver: "cpu", of which the processor itself is the first, or its name. */
+static bool is_its_word(const camber_device_info *info, const char *word) {
+    const size_t length = word ? strlen(word) : 0;
+    return length &&
+           (strcasecmp(word, "cpu") == 0 || (length >= strlen("camber") && strncasecmp(info->name, word, length) == 0));
+}
+
+/* Whether that one is also what the desc wants, so that no driver has to be asked: a GPU that matches is preferred,
+ * if there may be one. */
+static bool is_enough(const camber_device_desc *desc, const camber_found_devices *found) {
+    return is_usable(desc, found) && desc->number == 0 &&
+           (is_its_word(&found->list[0].info, desc->match) || !camber_hardware_is_here());
+}
+
+/* Checks whether drivers can be asked for the first time. If they cannot, but another device can be had, the log calls
+ * it no error. */
+static camber_status check_drivers(camber_context *context, const camber_gpu_backend *backend, bool has_other) {
     static atomic_bool were_asked; /* by the lock */
+    camber_saved_log kept;
     if (atomic_exchange(&were_asked, true))
         return CAMBER_OK;
+    if (has_other)
+        camber_log_demote_errors(context, &kept);
     camber_status status = camber_budget_check_drivers(context);
     if (status == CAMBER_OK)
         status = backend->check_process(context);
     if (status != CAMBER_OK)
         atomic_store(&were_asked, false);
+    if (has_other)
+        camber_log_restore(context, &kept);
     return status;
 }
 
@@ -90,19 +109,19 @@ camber_status camber_find_devices(camber_context *context, const camber_device_d
     if (status != CAMBER_OK)
         return status;
     pthread_mutex_lock(&asking);
-    for (size_t i = 0; i < BACKENDS && status == CAMBER_OK; i++) {
+    for (size_t i = 0; i < BACKENDS; i++) {
         if (backends[i]->has_drivers && is_enough(desc, found))
             break;
         if (backends[i]->has_drivers)
-            status = check_drivers(context, backends[i]);
+            status = check_drivers(context, backends[i], is_usable(desc, found));
         if (status != CAMBER_OK)
             break;
-        atomic_store(&process_of_drivers, getpid());
+        atomic_store(&process_of_devices, getpid());
         found->count +=
-            backends[i]->find(found->list + found->count, CAMBER_DEVICES_MAX - found->count, &found->failed);
+            backends[i]->find(context, found->list + found->count, CAMBER_DEVICES_MAX - found->count, &found->failed);
     }
     pthread_mutex_unlock(&asking);
-    return status;
+    return is_usable(desc, found) ? CAMBER_OK : status;
 }
 
 static camber_status list_devices(camber_context *context) {

@@ -67,8 +67,11 @@ static camber_status make_program(camber_device *device, camber_program_source *
         camber_program_destroy(device, made);
         return status;
     }
-    camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s in %.0f ms", rows[from->number].name,
-               made->built ? "built" : "from the cache", camber_now_ms() - begin);
+    const char *how = device->info.fixed_kernels ? "part of the library,"
+                      : made->built              ? "built in"
+                                                 : "from the cache in";
+    camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s %.0f ms", rows[from->number].name, how,
+               camber_now_ms() - begin);
     *program = made;
     return CAMBER_OK;
 }
@@ -162,7 +165,7 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT, "share %u of %u; it must be below their number",
                            share, shares);
     camber_cache_share(device->context, true);
-    if (!camber_cache_folder(device->context, all.folder))
+    if (device->info.fixed_kernels || !camber_cache_folder(device->context, all.folder))
         all.folder[0] = 0;
     for (unsigned n = share; n < CAMBER_PROGRAM_COUNT && status == CAMBER_OK; n += shares) {
         camber_program *program = NULL;

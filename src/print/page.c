@@ -104,6 +104,33 @@ static camber_status lay_out(camber_page *page) {
     return CAMBER_OK;
 }
 
+bool camber_page_is_utf8(const char *text, size_t size) {
+    for (size_t i = 0; i < size;) {
+        const unsigned char c = (unsigned char)text[i];
+        const size_t length = c < 0x80 ? 1 : c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
+        if ((c >= 0x80 && c < 0xc2) || !length || i + length > size)
+            return false;
+        uint32_t code = length == 1 ? c : c & (0x7fu >> length);
+        for (size_t k = 1; k < length; k++) {
+            if (((unsigned char)text[i + k] & 0xc0) != 0x80)
+                return false;
+            code = code << 6 | ((unsigned char)text[i + k] & 0x3f);
+        }
+        const uint32_t least = length == 3 ? 0x800 : length == 4 ? 0x10000 : 0;
+        if (code < least || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ||
+            (code >= 0xfdd0 && code <= 0xfdef) || (code & 0xfffe) == 0xfffe)
+            return false;
+        i += length;
+    }
+    return true;
+}
+
+static camber_status check_text(camber_context *context, const char *what, const char *text) {
+    if (!text || camber_page_is_utf8(text, strlen(text)))
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_ARGUMENT, "page: the %s is not text in UTF-8; convert it", what);
+}
+
 static bool copy_text(camber_page *page, const char **text) {
     if (*text && !**text)
         *text = NULL;
@@ -120,6 +147,10 @@ camber_status camber_page_create(camber_context *context, const camber_page_desc
     own.dpi = own.dpi != 0.0 ? own.dpi : 300.0;
     own.ratio = own.ratio != 0.0 ? own.ratio : own.dpi / CSS_PX_PER_INCH;
     camber_status status = check_desc(context, &own);
+    if (status == CAMBER_OK)
+        status = check_text(context, "title", desc->title);
+    if (status == CAMBER_OK)
+        status = check_text(context, "subtitle", desc->subtitle);
     if (status != CAMBER_OK)
         return status;
     camber_page *made = camber_alloc_zero(context, 1, sizeof *made);

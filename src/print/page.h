@@ -26,7 +26,10 @@ typedef struct camber_page_crop {
 /* Checks that a scene has the size of the page's view. Returns CAMBER_ERROR_ARGUMENT. */
 camber_status camber_page_crop_of(const camber_page *page, const camber_scene *scene, camber_page_crop *crop);
 
-/* ---- Glyphs (glyphs.c) ---- */
+/* Whether bytes are whole characters of UTF-8, as Cairo requires: without surrogates and noncharacters. */
+bool camber_page_is_utf8(const char *text, size_t size);
+
+/* ---- Glyphs (cairo/glyphs.c) ---- */
 
 /* Fonts as Cairo uses them. */
 typedef struct camber_page_fonts {
@@ -61,13 +64,15 @@ camber_status camber_page_show(camber_page_fonts *fonts, cairo_t *cr, const camb
 /* Adds their outlines to the current path. */
 camber_status camber_page_add_outlines(camber_page_fonts *fonts, cairo_t *cr, const camber_page_run *run);
 
-/* ---- Marginalia (marginalia.c) ---- */
+/* ---- Marginalia (cairo/marginalia.c) ---- */
 
+/* Clips to the part of the sheet that shows the map. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_page_clip(const camber_page *page, cairo_t *cr);
 /* Draws title, grid, scale bar, north arrow, credit and the map's frame. */
 camber_status camber_page_draw_marginalia(const camber_page *page, const camber_scene_parts *parts,
                                           camber_page_fonts *fonts, cairo_t *cr);
 
-/* ---- Lines (lines.c) ---- */
+/* ---- Lines (cairo/lines.c) ---- */
 
 /* Stretches of lines, or rings, in device px of the view. */
 typedef struct camber_page_lines {
@@ -100,7 +105,10 @@ camber_status camber_page_lines_add_part(camber_page_lines *lines, const camber_
 camber_status camber_page_lines_offset(camber_page_lines *lines, const camber_stroke *stroke, float offset_px,
                                        camber_page_lines *beside);
 
-/* ---- The map (passes.c, labels.c, images.c) ---- */
+/* ---- The map (cairo/passes.c, cairo/labels.c, cairo/images.c) ---- */
+
+/* Cairo's images have at most 32767 px on a side; larger ones are drawn in tiles of this size. */
+enum { CAMBER_PAGE_TILE_PX = 16384 };
 
 /* Converts a pixel of camber's to Cairo's. */
 static inline uint32_t camber_page_argb(const uint8_t *rgba) {

@@ -4,13 +4,13 @@
 #include <errno.h>
 #include <hb-ot.h>
 #include <math.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 /* Font files are mapped into memory, because a text needs only a small part of them, and a font of ideographs has 20
- * MB. */
+ * MB. Cairo keeps fonts of pages for longer than a context lives, so a mapping belongs to none. */
 typedef struct mapping {
-    camber_context *context;
     void *bytes;
     size_t size_bytes;
 } mapping;
@@ -18,7 +18,7 @@ typedef struct mapping {
 static void unmap(void *user) {
     mapping *mapped = user;
     munmap(mapped->bytes, mapped->size_bytes);
-    camber_free(mapped->context, mapped);
+    free(mapped);
 }
 
 hb_blob_t *camber_face_map_file(camber_context *context, const char *path, camber_status *status) {
@@ -33,11 +33,10 @@ hb_blob_t *camber_face_map_file(camber_context *context, const char *path, cambe
         *status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: this is no font file", path);
         goto done;
     }
-    mapped = camber_alloc_zero(context, 1, sizeof *mapped);
+    mapped = calloc(1, sizeof *mapped);
     *status = mapped ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     if (!mapped)
         goto done;
-    mapped->context = context;
     mapped->size_bytes = (size_t)size_bytes;
     mapped->bytes = mmap(NULL, mapped->size_bytes, PROT_READ, MAP_PRIVATE, file, 0);
     if (mapped->bytes == MAP_FAILED) {
@@ -48,7 +47,7 @@ hb_blob_t *camber_face_map_file(camber_context *context, const char *path, cambe
     blob = hb_blob_create(mapped->bytes, (unsigned)mapped->size_bytes, HB_MEMORY_MODE_READONLY, mapped, unmap);
     mapped = NULL;
 done:
-    camber_free(context, mapped);
+    free(mapped);
     close(file);
     return blob;
 }

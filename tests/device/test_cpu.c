@@ -8,13 +8,19 @@
 #include <errno.h>
 #include <fenv.h>
 #include <pthread.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
-static int allowed = 1000;
+static int allowed = 1000, created;
 
 int __real_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user);
 int __wrap_pthread_create(pthread_t *id, const pthread_attr_t *how, void *(*work)(void *), void *user) {
-    return allowed-- > 0 ? __real_pthread_create(id, how, work, user) : EAGAIN;
+    if (allowed-- <= 0)
+        return EAGAIN;
+    created++;
+    return __real_pthread_create(id, how, work, user);
 }
 
 /* ---- The pool ---- */
@@ -24,13 +30,23 @@ enum { ITEMS_MAX = 5000 };
 typedef struct calls {
     size_t count;
     atomic_int of[ITEMS_MAX];
-    atomic_int wrong; /* calls with another count, or with the caller's rounding */
+    atomic_int wrong; /* calls with another count, with the caller's rounding, or with the wrong signals */
+    pthread_t caller;
 } calls;
+
+/* Faults reach each thread, and signals from outside only the caller's. */
+static bool takes_signals(const calls *c) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, NULL, &blocked);
+    return !sigismember(&blocked, SIGSEGV) && !sigismember(&blocked, SIGABRT) &&
+           !sigismember(&blocked, SIGTERM) == !!pthread_equal(c->caller, pthread_self());
+}
 
 static void count_items(const void *args, size_t first, size_t end, size_t count) {
     calls *c;
     memcpy(&c, args, sizeof c);
-    atomic_fetch_add(&c->wrong, count != c->count || end > count || first >= end || fegetround() != FE_TONEAREST);
+    atomic_fetch_add(&c->wrong, count != c->count || end > count || first >= end || fegetround() != FE_TONEAREST ||
+                                    !takes_signals(c));
     for (size_t i = first; i < end; i++)
         atomic_fetch_add(&c->of[i], 1);
 }
@@ -47,6 +63,7 @@ static void run_pool(size_t threads, int started) {
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
         memset(&c, 0, sizeof c);
         c.count = counts[n];
+        c.caller = pthread_self();
         fesetround(FE_UPWARD);
         camber_cpu_pool_run(pool, &(camber_cpu_work){count_items, &args, counts[n]});
         assert_int_equal(fegetround(), FE_UPWARD);
@@ -68,6 +85,33 @@ static void test_pool(void **state) {
     run_pool(9, 3);
     run_pool(9, 0);
     camber_cpu_pool_destroy(NULL);
+}
+
+static void do_nothing(const void *args, size_t first, size_t end, size_t count) {
+    (void)args, (void)first, (void)end, (void)count;
+}
+
+/* The threads that the system has refused are there some launches later, and each of them once. */
+static void test_refused_threads(void **state) {
+    (void)state;
+    enum { THREADS = 9, REFUSED = 5 };
+    host h;
+    camber_context *context = host_context(&h);
+    camber_cpu_pool *pool = NULL;
+    assert_int_equal(camber_cpu_pool_create(context, THREADS, &pool), CAMBER_OK);
+    allowed = THREADS - 1 - REFUSED;
+    created = 0;
+    for (int n = 0; n < 100; n++) {
+        camber_cpu_pool_run(pool, &(camber_cpu_work){do_nothing, NULL, THREADS});
+        if (n == 20) {
+            assert_int_equal(created, THREADS - 1 - REFUSED);
+            assert_in_range(-allowed, 1, 5); /* it does not ask at each launch */
+            allowed = 1000;
+        }
+    }
+    assert_int_equal(created, THREADS - 1);
+    camber_cpu_pool_destroy(pool);
+    host_done(&h, context);
 }
 
 /* ---- Pictures ---- */
@@ -145,6 +189,40 @@ static void test_no_driver(void **state) {
     host_done(&h, context);
 }
 
+/* Leaves the process some address space, which is too little for drivers. Returns the limit that was before. */
+static struct rlimit limit_memory(void) {
+    struct rlimit before, limit;
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%lu", &pages), 1);
+    fclose(file);
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    limit = before;
+    limit.rlim_cur = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + (500 << 20);
+    assert_int_equal(setrlimit(RLIMIT_AS, &limit), 0);
+    return before;
+}
+
+/* Runs before any test that asks a driver. A number says that all devices are looked for. */
+static void test_failing_drivers(void **state) {
+    (void)state;
+    static uint8_t rgba[PICTURE_BYTES];
+    host h;
+    camber_context *context = host_context(&h);
+    const struct rlimit before = limit_memory();
+    const camber_status any = draw_on(context, &(camber_device_desc){.number = 1}, rgba);
+    const size_t errors = h.errors;
+    const camber_status other = draw_on(context, &(camber_device_desc){.match = "opencl"}, rgba);
+    setrlimit(RLIMIT_AS, &before);
+    assert_int_equal(any, CAMBER_OK);
+    assert_int_equal(errors, 0);
+    assert_int_equal(other, CAMBER_ERROR_MEMORY);
+    assert_story(&h, "address space");
+    assert_false(is_loaded("libpocl"));
+    host_done(&h, context);
+}
+
 /* Draws on a level, or, if level is NULL, in OpenCL. Returns whether it is here. */
 static bool draw_level(const char *level, uint32_t threads, uint8_t *rgba) {
     host h;
@@ -188,6 +266,23 @@ static void test_levels(void **state) {
 
 /* ---- Failures ---- */
 
+static void test_unknown_level(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    const camber_device_info *info = NULL;
+    setenv("CAMBER_CPU", "x86-64-v9", 1);
+    assert_int_equal(camber_device_list(context, "camber x", 0, &info), CAMBER_OK);
+    unsetenv("CAMBER_CPU");
+    assert_null(info);
+    assert_int_equal(h.warnings, 1);
+    assert_non_null(strstr(h.warning, "CAMBER_CPU"));
+    assert_non_null(strstr(h.warning, "'x86-64-v9'"));
+    assert_non_null(strstr(h.warning, "none"));
+    h.warnings = 0;
+    host_done(&h, context);
+}
+
 static void test_fixed_kernels(void **state) {
     (void)state;
     host h;
@@ -219,8 +314,9 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver), cmocka_unit_test(test_pool),
-                                       cmocka_unit_test(test_levels), cmocka_unit_test(test_fixed_kernels),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_driver),       cmocka_unit_test(test_failing_drivers),
+                                       cmocka_unit_test(test_unknown_level),   cmocka_unit_test(test_pool),
+                                       cmocka_unit_test(test_refused_threads), cmocka_unit_test(test_levels),
+                                       cmocka_unit_test(test_fixed_kernels),   cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

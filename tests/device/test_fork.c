@@ -1,10 +1,11 @@
-/* A child that was forked after drivers were set up is refused, and does not wait for threads that are the parent's. */
+/* A child that was forked after camber had looked for devices is refused, and waits for no thread of its parent. */
 #include "core.h"
 
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { SIDE_PX = 32, LONGEST_S = 60 };
+enum { SIDE_PX = 256, LONGEST_S = 60 };
 
 typedef struct drawing {
     char error[512];
@@ -40,7 +41,7 @@ static camber_status render(drawing *d) {
 }
 
 static camber_status open_drawing(drawing *d) {
-    static const float points[] = {4, 4, 28, 20};
+    static const float points[] = {4, 4, 250, 200};
     static const uint32_t offsets[] = {0, 2};
     const camber_context_desc context = {.log = take_log, .log_user = d};
     const camber_polylines_desc lines = {.points = points, .point_count = 2, .offsets = offsets, .polyline_count = 1};
@@ -112,7 +113,32 @@ static void refuses_children(void **state) {
     close_drawing(&d);
 }
 
+/* A child may destroy what it has inherited, as a language's run time does at its end. OpenCL's drivers may wait. */
+static void destroys_in_child(void **state) {
+    drawing d = {.error = ""};
+    int status = 0;
+    (void)state;
+    if (open_drawing(&d) != CAMBER_OK)
+        fail_msg("%s", d.error);
+    assert_int_equal(tessellate(&d), CAMBER_OK);
+    assert_int_equal(render(&d), CAMBER_OK);
+    poll(NULL, 0, 100); /* until the pool's threads wait for work */
+    const bool is_cpu = camber_device_get_info(d.device).fixed_kernels;
+    const pid_t child = is_cpu ? fork() : getpid();
+    if (child == 0) {
+        alarm(LONGEST_S);
+        close_drawing(&d);
+        _exit(0);
+    }
+    if (is_cpu)
+        assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    close_drawing(&d);
+    if (!is_cpu)
+        skip();
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_children)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_children), cmocka_unit_test(destroys_in_child)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,8 +109,13 @@ expect(b"pHYs" not in dict(chunks(render("plain.png", "--size", "64x64"))), "a P
 dense = dict(chunks(render("dense.png", "--size", "64x64", "--dpi", "300")))
 expect(struct.unpack(">IIB", dense[b"pHYs"]) == (11811, 11811, 1) and struct.unpack(">I", dense[b"IHDR"][:4]) == (64,),
        "--dpi alone is the density of a picture")
+coarse = dict(chunks(render("coarse.png", "--paper", "A6", "--dpi", str(DPI), "--ratio", "50")))
+expect(struct.unpack(">II", coarse[b"IHDR"][:8]) == (width, height), "the sheet's size counts, not the usual one")
 wide = dict(chunks(render("wide.png", *VIEW, "--landscape")))
 expect(struct.unpack(">II", wide[b"IHDR"][:8]) == (height, width), "--landscape turns the sheet")
+long = dict(chunks(render("long.png", "--center", "7.423,43.737", "--zoom", "15", "--paper", "2000x30mm", "--dpi", "600",
+                          "--grid")))
+expect(struct.unpack(">II", long[b"IHDR"][:8]) == (47244, 709), "a sheet may be wider than an image of Cairo's")
 top = rows_of(png)[2]
 expect(set(top) == {255}, "the margin is white")
 
@@ -120,7 +125,12 @@ pdf = render("sheet.pdf", *VIEW, "--title", "Monaco Ville", "--scale-bar", "--no
 expect(open(pdf, "rb").read() == open(render("again.pdf", *VIEW, "--title", "Monaco Ville", "--scale-bar",
                                              "--north-arrow"), "rb").read(), "a PDF is the same each time")
 report = json.loads(run("render", MONACO, "-o", os.path.join(FOLDER, "counted.pdf"), "-f", "--json", *VIEW).stdout)
+expect((report["width"], report["height"]) == (width, height), f"--json tells the sheet's size: {report}")
 expect(report["labels"] > 3 and report["output_bytes"] > 10000, f"--json counts {report}")
+odd = "Of \ufffe"  # a noncharacter, which Cairo does not write
+expect("the title is not text" in run("render", MONACO, "-o", os.path.join(FOLDER, "odd.pdf"), *VIEW, "--title", odd,
+                                      status=2).stderr, "a title that is no text")
+render("credit.pdf", *VIEW, "--attribution", odd)
 piped = subprocess.run([CAMBER, "render", MONACO, "-o", "-", "--format", "pdf", "-q", *VIEW], capture_output=True)
 expect(piped.returncode == 0 and piped.stdout.startswith(b"%PDF-"), "a PDF on standard output")
 
@@ -204,6 +214,10 @@ for options, said in (
         (["-o", "a.pdf", "--paper", "A17"], "--paper A17: not a size of paper"),
         (["-o", "a.pdf", "--paper", "600x900cm"], "not a size of paper"),
         (["-o", "a.pdf", "--paper", "0x9mm"], "not a size of paper"),
+        (["-o", "a.pdf", "--paper", "0x600x900mm"], "not a size of paper"),
+        (["-o", "a.pdf", "--paper", "10x0x600mm"], "not a size of paper"),
+        (["-o", "a.pdf", "--paper", "600x900mm 1"], "not a size of paper"),
+        (["-o", "a.png", "--ratio", "50"], "1024x1024 at ratio 50: out of range"),
         (["-o", "a.pdf", "--paper", "A4", "--size", "10x10"], "--paper and --size"),
         (["-o", "a.pdf", "--margin", "110"], "--margin 110: leaves nothing"),
         (["-o", "a.pdf", "--paper", "A0", "--dpi", "4800"], "--dpi 4800"),

@@ -1,8 +1,11 @@
 /* Threads with numbers, also if the system has fewer than are wanted: pthread_create is wrapped, and refuses from some
  * call on. */
+#define _GNU_SOURCE /* sched_setaffinity */
+
 #include "base/threads.h"
 
 #include <errno.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -84,8 +87,26 @@ static void test_count(void **state) {
     assert_int_equal(camber_threads_count(1000000), CAMBER_MOST_THREADS);
 }
 
+/* Work for one core gets one thread, however many cores the machine has. */
+static void test_affinity(void **state) {
+    (void)state;
+    cpu_set_t before, one;
+    if (sched_getaffinity(0, sizeof before, &before) != 0)
+        skip();
+    assert_int_equal(camber_cores_count(), CPU_COUNT(&before));
+    size_t core = 0;
+    while (!CPU_ISSET(core, &before))
+        core++;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+    assert_int_equal(camber_cores_count(), 1);
+    assert_int_equal(camber_threads_count(0), 1);
+    assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_run), cmocka_unit_test(test_start),
-                                       cmocka_unit_test(test_count)};
+                                       cmocka_unit_test(test_count), cmocka_unit_test(test_affinity)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

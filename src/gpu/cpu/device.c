@@ -30,10 +30,18 @@ static const cpu_device *cpu_of(const camber_device *device) {
 
 /* ---- Devices ---- */
 
-/* The level that CAMBER_CPU names, or the best. "none" leaves this device out. */
-static const camber_cpu_level *wanted_level(void) {
+/* The level that CAMBER_CPU names, or the best. "none" leaves this device out, and so does a level that is not here. */
+static const camber_cpu_level *wanted_level(camber_context *context) {
     const char *name = getenv("CAMBER_CPU");
-    return camber_cpu_level_find(name && *name ? name : NULL);
+    const camber_cpu_level *level = camber_cpu_level_find(name && *name ? name : NULL);
+    char names[128];
+    if (!level && name && *name && strcmp(name, "none") != 0) {
+        camber_cpu_level_names(names, sizeof names);
+        camber_log(context, CAMBER_LOG_WARNING,
+                   "CAMBER_CPU: this processor has no level '%s', so it is left out; choose one of: %snone", name,
+                   names);
+    }
+    return level;
 }
 
 static uint64_t machine_bytes(void) {
@@ -41,8 +49,8 @@ static uint64_t machine_bytes(void) {
     return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;
 }
 
-static size_t find(camber_found_device *found, size_t capacity, camber_failed_call *failed) {
-    const camber_cpu_level *level = wanted_level();
+static size_t find(camber_context *context, camber_found_device *found, size_t capacity, camber_failed_call *failed) {
+    const camber_cpu_level *level = wanted_level(context);
     (void)failed;
     if (!level || capacity == 0)
         return 0;

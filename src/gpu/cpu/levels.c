@@ -1,7 +1,12 @@
+/* The kernels of each level, and which levels this processor has.
+ *
+ * Input: the functions that the build has made of the programs (compile.cmake), and what the processor says of itself.
+ * Output: a level with a table of kernels for each program. Main idea: levels stand in a list, best first. */
 #include "gpu/cpu/levels.h"
 
 #include "gpu/programs.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #ifdef __x86_64__
@@ -91,4 +96,11 @@ const camber_cpu_level *camber_cpu_level_find(const char *name) {
         if ((!name || strcmp(name, levels[i].level.name) == 0) && levels[i].is_here())
             return &levels[i].level;
     return NULL;
+}
+
+void camber_cpu_level_names(char *names, size_t size) {
+    *names = 0;
+    for (size_t i = 0, used = 0; i < sizeof levels / sizeof *levels; i++, used = strlen(names))
+        if (levels[i].is_here())
+            snprintf(names + used, size - used, "%s, ", levels[i].level.name);
 }

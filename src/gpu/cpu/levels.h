@@ -22,5 +22,7 @@ typedef struct camber_cpu_level {
 
 /* Returns the best level that this processor has, or the level of that name if it has it; NULL: none. */
 const camber_cpu_level *camber_cpu_level_find(const char *name);
+/* Writes the names of the levels that this processor has, each followed by ", ". */
+void camber_cpu_level_names(char *names, size_t size);
 
 #endif

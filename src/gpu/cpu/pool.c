@@ -11,6 +11,7 @@
 #include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 /* rasterize has the state of a tile on the stack. The usual 8 MB would count against a limit of address space. */
 enum { STACK_BYTES = 1 << 20 };
@@ -20,9 +21,10 @@ enum { RUNS_LEFT = 4 };
 
 struct camber_cpu_pool {
     camber_context *context;
-    size_t wanted; /* threads besides the one that launches */
-    bool is_started;
-    size_t count; /* threads that run */
+    size_t wanted;             /* threads besides the one that launches */
+    size_t shared, next_start; /* launches so far that had work for others; at which one threads are started */
+    pid_t process;             /* which has started them. 0: nobody yet */
+    size_t count;              /* threads that run */
     pthread_mutex_t lock;
     pthread_cond_t begins, ends;
     /* These belong to the lock. */
@@ -81,16 +83,29 @@ static void *serve(void *user) {
     return NULL;
 }
 
-/* Starts the threads. They take no signals, which are for the caller's own threads. */
+/* The signals that threads of the pool leave to the caller's own. A fault has to reach the thread that made it: if it
+ * is blocked there, the process ends without calling its handler. */
+static void choose_signals(sigset_t *signals) {
+    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
+    sigfillset(signals);
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        sigdelset(signals, faults[i]);
+}
+
+/* Starts the threads that are missing. If the system refuses some, launches 2, 4, 8 and so on try again: a limit may
+ * have been reached for a moment only, and refusals cost little. */
 static void start(camber_cpu_pool *pool) {
     pthread_attr_t attributes;
-    sigset_t all, before;
-    pool->is_started = true;
+    sigset_t blocked, before;
+    if (pool->count == pool->wanted || ++pool->shared < pool->next_start)
+        return;
+    pool->next_start = 2 * pool->shared;
+    pool->process = getpid();
     if (pthread_attr_init(&attributes) != 0)
         return;
     pthread_attr_setstacksize(&attributes, STACK_BYTES);
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    choose_signals(&blocked);
+    pthread_sigmask(SIG_SETMASK, &blocked, &before);
     while (pool->count < pool->wanted && pthread_create(&pool->threads[pool->count], &attributes, serve, pool) == 0)
         pool->count++;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -110,15 +125,24 @@ camber_status camber_cpu_pool_create(camber_context *context, size_t threads, ca
     return CAMBER_OK;
 }
 
-void camber_cpu_pool_destroy(camber_cpu_pool *pool) {
-    if (!pool)
-        return;
+static void end_threads(camber_cpu_pool *pool) {
     pthread_mutex_lock(&pool->lock);
     pool->is_over = true;
     pthread_cond_broadcast(&pool->begins);
     pthread_mutex_unlock(&pool->lock);
     for (size_t i = 0; i < pool->count; i++)
         pthread_join(pool->threads[i], NULL);
+}
+
+/* A forked process has no threads of the pool, and its lock and conditions would wait for them. */
+void camber_cpu_pool_destroy(camber_cpu_pool *pool) {
+    if (!pool)
+        return;
+    if (pool->process && pool->process != getpid()) {
+        camber_free(pool->context, pool);
+        return;
+    }
+    end_threads(pool);
     pthread_cond_destroy(&pool->ends);
     pthread_cond_destroy(&pool->begins);
     pthread_mutex_destroy(&pool->lock);
@@ -150,7 +174,7 @@ void camber_cpu_pool_run(camber_cpu_pool *pool, const camber_cpu_work *work) {
     const bool shares = work->count > 1 && pool->wanted > 0;
     fegetenv(&rounding);
     fesetenv(FE_DFL_ENV); /* whatever the caller's rounding is, the bytes are the same */
-    if (shares && !pool->is_started)
+    if (shares)
         start(pool);
     if (shares && pool->count > 0) {
         open_launch(pool, work);

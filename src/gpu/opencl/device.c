@@ -86,10 +86,11 @@ static size_t find_on_platform(cl_platform_id platform, camber_found_device *fou
     return count;
 }
 
-static size_t find(camber_found_device *found, size_t capacity, camber_failed_call *failed) {
+static size_t find(camber_context *context, camber_found_device *found, size_t capacity, camber_failed_call *failed) {
     cl_platform_id platforms[PLATFORMS_MAX];
     cl_uint platform_count = 0;
     size_t count = 0;
+    (void)context;
     const cl_int code = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
     if (code != CL_SUCCESS) {
         if (code != PLATFORM_NOT_FOUND_KHR)

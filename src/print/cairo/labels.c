@@ -3,8 +3,6 @@
  * Input: the items of the labels that are shown. Output: texts with their characters, outlines of halos, images. Main
  * idea: glyphs of a label that are turned alike become one run of text, so that a straight street has its name in one
  * piece. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include <math.h>
@@ -269,5 +267,3 @@ camber_status camber_page_draw_labels(camber_page_map *map, size_t pass) {
         status = draw(map, of->first_glyph, of->first_glyph + of->glyph_count);
     return status;
 }
-
-#endif

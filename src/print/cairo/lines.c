@@ -3,8 +3,6 @@
  * Input: the features' points and the entries of the scene's network. Output: lines in px of the view. Main idea:
  * unlike a network's stretches (camber_network_project_lines), these know how far along their line they begin, so
  * dashes and gradients of a page are those of the picture. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include "camber_proof.h"
@@ -342,5 +340,3 @@ camber_status camber_page_lines_offset(camber_page_lines *l, const camber_stroke
     camber_polylines_destroy(polylines);
     return status;
 }
-
-#endif

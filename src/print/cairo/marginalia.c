@@ -2,8 +2,6 @@
  *
  * Input: the page and the view. Output: Cairo's paths and texts, in device px of the sheet. Everything on the map has a
  * light halo, so that it can be read on any style. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include "features/mercator.h"
@@ -307,6 +305,18 @@ static void draw_frame(const marginalia *m) {
     cairo_stroke(m->cr);
 }
 
+camber_status camber_page_clip(const camber_page *page, cairo_t *cr) {
+    const camber_page_info *info = &page->info;
+    double x0, y0, x1, y1;
+    cairo_rectangle(cr, info->map_x, info->map_y, info->map_width, info->map_height);
+    cairo_clip(cr);
+    /* If Cairo has no memory for a clip, it clips everything, and its status stays the same. */
+    cairo_clip_extents(cr, &x0, &y0, &x1, &y1);
+    if (cairo_status(cr) != CAIRO_STATUS_SUCCESS || (x0 < x1 && y0 < y1))
+        return CAMBER_OK; /* a status is told at the end of the page */
+    return camber_fail(page->context, CAMBER_ERROR_MEMORY, "page: Cairo has no memory to clip the map");
+}
+
 camber_status camber_page_draw_marginalia(const camber_page *page, const camber_scene_parts *parts,
                                           camber_page_fonts *fonts, cairo_t *cr) {
     const camber_page_info *info = &page->info;
@@ -325,11 +335,9 @@ camber_status camber_page_draw_marginalia(const camber_page *page, const camber_
                     .shift_y = info->map_y - crop_y};
     m.text_px = fmin(fmax(0.013 * fmin(info->width, info->height), 1.8 * m.mm), 9.0 * m.mm);
     const bool flat = parts->view->pitch_deg == 0.0; /* a tilted map has no one scale */
-    camber_status status = CAMBER_OK;
     cairo_save(cr);
-    cairo_rectangle(cr, m.x0, m.y0, m.x1 - m.x0, m.y1 - m.y0);
-    cairo_clip(cr);
-    if (page->desc.grid && flat)
+    camber_status status = camber_page_clip(page, cr);
+    if (status == CAMBER_OK && page->desc.grid && flat)
         status = draw_grid(&m);
     if (status == CAMBER_OK && page->desc.scale_bar && flat)
         status = draw_scale_bar(&m);
@@ -341,5 +349,3 @@ camber_status camber_page_draw_marginalia(const camber_page *page, const camber_
     draw_frame(&m);
     return status == CAMBER_OK ? draw_titles(&m) : status;
 }
-
-#endif

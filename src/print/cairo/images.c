@@ -1,8 +1,6 @@
 /* Images of a page: those of the style, and layers that the renderer draws because Cairo cannot.
  *
  * Input: premultiplied RGBA8. Output: Cairo's surfaces, whose pixels are premultiplied words of ARGB. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 /* ---- Images of the style ---- */
@@ -59,19 +57,24 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-static camber_status paint_image(camber_page_map *map, const layer_image *image) {
-    if (image->x0 >= image->x1)
-        return CAMBER_OK;
-    cairo_surface_t *surface = cairo_image_surface_create_for_data(
-        image->argb + 4 * ((size_t)image->y0 * image->width + image->x0), CAIRO_FORMAT_ARGB32,
-        (int)(image->x1 - image->x0), (int)(image->y1 - image->y0), (int)(4 * image->width));
-    cairo_set_source_surface(map->cr, surface, image->x0, image->y0);
-    cairo_pattern_set_filter(cairo_get_source(map->cr), CAIRO_FILTER_NEAREST);
-    cairo_paint(map->cr);
-    cairo_set_source_rgb(map->cr, 0.0, 0.0, 0.0);
+static void paint_tile(cairo_t *cr, const layer_image *image, uint32_t x, uint32_t y) {
+    const uint32_t width = image->x1 - x < CAMBER_PAGE_TILE_PX ? image->x1 - x : CAMBER_PAGE_TILE_PX;
+    const uint32_t height = image->y1 - y < CAMBER_PAGE_TILE_PX ? image->y1 - y : CAMBER_PAGE_TILE_PX;
+    cairo_surface_t *surface =
+        cairo_image_surface_create_for_data(image->argb + 4 * ((size_t)y * image->width + x), CAIRO_FORMAT_ARGB32,
+                                            (int)width, (int)height, (int)(4 * image->width));
+    cairo_set_source_surface(cr, surface, x, y);
+    cairo_pattern_set_filter(cairo_get_source(cr), CAIRO_FILTER_NEAREST);
+    cairo_paint(cr);
+    cairo_set_source_rgb(cr, 0.0, 0.0, 0.0);
     cairo_surface_finish(surface); /* what Cairo has recorded becomes a copy */
     cairo_surface_destroy(surface);
-    return CAMBER_OK;
+}
+
+static void paint_image(cairo_t *cr, const layer_image *image) {
+    for (uint32_t y = image->y0; y < image->y1; y += CAMBER_PAGE_TILE_PX)
+        for (uint32_t x = image->x0; x < image->x1; x += CAMBER_PAGE_TILE_PX)
+            paint_tile(cr, image, x, y);
 }
 
 static void tell(camber_page_map *map) {
@@ -106,7 +109,7 @@ camber_status camber_page_draw_image(camber_page_map *map, size_t first_pass, si
         return CAMBER_ERROR_MEMORY;
     status = camber_renderer_render(map->renderer, &frame, take_rows, &image, NULL);
     if (status == CAMBER_OK)
-        status = paint_image(map, &image);
+        paint_image(map->cr, &image);
     camber_free(map->context, image.argb);
     return status;
 }
@@ -122,5 +125,3 @@ void camber_page_map_free(camber_page_map *map) {
     camber_page_lines_free(&map->part);
     camber_page_fonts_free(&map->fonts);
 }
-
-#endif

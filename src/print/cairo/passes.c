@@ -4,8 +4,6 @@
  * idea: consecutive entries of one row are one path with one stroke or fill, as in the picture. A stroke of one path
  * covers each place once, so a translucent line does not darken where it crosses itself; several of them are drawn into
  * a group, which is then drawn with their alpha. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include <math.h>
@@ -66,11 +64,15 @@ static camber_status fill_path(camber_page_map *map, const camber_fill *fill, do
     }
     cairo_save(cr);
     status = set_pattern(map, fill);
-    if (status == CAMBER_OK && alpha >= 1.0 && !is_all) {
+    if (status == CAMBER_OK && is_all) {
+        cairo_paint_with_alpha(cr, alpha);
+    } else if (status == CAMBER_OK && alpha >= 1.0) {
         cairo_fill(cr);
     } else if (status == CAMBER_OK) {
-        if (!is_all)
-            cairo_clip(cr);
+        /* Not by a clip: if Cairo has no memory for one, it clips everything, and its status stays the same. */
+        cairo_push_group(cr);
+        cairo_fill(cr);
+        cairo_pop_group_to_source(cr);
         cairo_paint_with_alpha(cr, alpha);
     }
     cairo_restore(cr);
@@ -419,7 +421,7 @@ static size_t end_of_alike(const camber_page_map *map, const camber_pass *pass, 
     return i;
 }
 
-/* Finds the end of the translucent lines that are flattened with the first one. *alike: they are drawn alike. */
+/* Finds the end of the translucent lines that are flattened with the first one. */
 static size_t end_of_flat(const camber_page_map *map, const camber_pass *pass, size_t first, size_t end) {
     const camber_paint *paint = paint_of(map, pass, first);
     size_t i = first + 1;
@@ -535,5 +537,3 @@ camber_status camber_page_draw_map(camber_page_map *map) {
     }
     return status;
 }
-
-#endif

@@ -3,8 +3,6 @@
  * Input: glyphs of the text layer, by their numbers in a set of fonts. Main idea: Cairo gets the very font files that
  * the text was shaped with. Glyphs that come from a style's ranges of distances, and named instances of variable fonts,
  * have no such file; they become a font of Cairo's own kind, made of their outlines. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include "text/fonts.h"
@@ -19,50 +17,52 @@ static const float TOLERANCE_EM = 1.0f / 1024.0f;
 
 /* ---- Fonts from files ---- */
 
-/* A copy of a font file. Cairo keeps fonts in a cache for longer than the camber_fonts live, so nothing here may belong
- * to a context. */
-typedef struct font_copy {
+/* A font file as FreeType reads it, from HarfBuzz's bytes. Cairo keeps fonts in a cache for longer than the
+ * camber_fonts live, so nothing here may belong to a context. */
+typedef struct font_file {
+    hb_blob_t *bytes;
     FT_Library library;
     FT_Face face;
-    unsigned char bytes[];
-} font_copy;
+} font_file;
 
-static const cairo_user_data_key_t copy_key, outlines_key;
+static const cairo_user_data_key_t file_key, outlines_key;
 
-static void free_copy(void *user) {
-    font_copy *copy = user;
-    if (copy->face)
-        FT_Done_Face(copy->face);
-    if (copy->library)
-        FT_Done_FreeType(copy->library);
-    free(copy);
+static void close_file(void *user) {
+    font_file *file = user;
+    if (file->face)
+        FT_Done_Face(file->face);
+    if (file->library)
+        FT_Done_FreeType(file->library);
+    hb_blob_destroy(file->bytes);
+    free(file);
 }
 
-/* Returns NULL if FreeType does not read the font. */
-static cairo_font_face_t *open_file(hb_face_t *face) {
-    hb_blob_t *blob = hb_face_reference_blob(face);
+/* Makes Cairo's face of a file. Leaves it NULL if FreeType does not read the font.
+ * Returns CAMBER_ERROR_MEMORY, which is not logged. */
+static camber_status open_file(hb_face_t *face, cairo_font_face_t **made) {
+    font_file *file = calloc(1, sizeof *file);
+    if (!file)
+        return CAMBER_ERROR_MEMORY;
+    file->bytes = hb_face_reference_blob(face);
     unsigned size = 0;
-    const char *bytes = hb_blob_get_data(blob, &size);
-    font_copy *copy = size ? calloc(1, sizeof *copy + size) : NULL;
-    cairo_font_face_t *made = NULL;
-    if (!copy)
-        goto done;
-    memcpy(copy->bytes, bytes, size);
-    if (FT_Init_FreeType(&copy->library) ||
-        FT_New_Memory_Face(copy->library, copy->bytes, (FT_Long)size, (FT_Long)hb_face_get_index(face), &copy->face))
-        goto done;
-    made = cairo_ft_font_face_create_for_ft_face(copy->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
-    if (cairo_font_face_set_user_data(made, &copy_key, copy, free_copy) != CAIRO_STATUS_SUCCESS) {
-        cairo_font_face_destroy(made);
-        made = NULL;
-        goto done;
+    const char *bytes = hb_blob_get_data(file->bytes, &size);
+    FT_Error error = FT_Init_FreeType(&file->library);
+    if (!error)
+        error = FT_New_Memory_Face(file->library, (const FT_Byte *)bytes, (FT_Long)size,
+                                   (FT_Long)hb_face_get_index(face), &file->face);
+    if (error) {
+        close_file(file);
+        return FT_ERROR_BASE(error) == FT_Err_Out_Of_Memory ? CAMBER_ERROR_MEMORY : CAMBER_OK;
     }
-    copy = NULL; /* the face owns it */
-done:
-    if (copy)
-        free_copy(copy);
-    hb_blob_destroy(blob);
-    return made;
+    cairo_font_face_t *opened =
+        cairo_ft_font_face_create_for_ft_face(file->face, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);
+    if (cairo_font_face_set_user_data(opened, &file_key, file, close_file) != CAIRO_STATUS_SUCCESS) {
+        cairo_font_face_destroy(opened);
+        close_file(file);
+        return CAMBER_ERROR_MEMORY;
+    }
+    *made = opened; /* which owns the file */
+    return CAMBER_OK;
 }
 
 /* ---- Fonts from outlines ---- */
@@ -121,9 +121,10 @@ static camber_status find_face(camber_page_fonts *f, uint32_t source, cairo_font
     }
     const camber_face *file = f->fonts->sources[source].face;
     cairo_font_face_t **found = f->faces + source;
+    camber_status status = CAMBER_OK;
     if (!*found && file && !is_instance(file->font))
-        *found = open_file(hb_font_get_face(file->font));
-    if (!*found)
+        status = open_file(hb_font_get_face(file->font), found);
+    if (!*found && status == CAMBER_OK)
         *found = make_outlines(f->fonts);
     *face = *found;
     return *found ? CAMBER_OK : camber_fail(f->context, CAMBER_ERROR_MEMORY, "page: no memory for a font");
@@ -143,25 +144,12 @@ void camber_page_fonts_free(camber_page_fonts *f) {
 
 /* ---- Runs ---- */
 
-/* Whether bytes are whole characters of UTF-8, as Cairo requires. */
+/* Whether bytes are text that a page can say: whole characters, and none that control. */
 static bool is_text(const char *text, size_t size) {
-    for (size_t i = 0; i < size;) {
-        const unsigned char c = (unsigned char)text[i];
-        const size_t length = c < 0x80 ? 1 : c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
-        if (c < 0x20 || (c >= 0x80 && c < 0xc2) || !length || i + length > size)
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)text[i] < 0x20)
             return false;
-        uint32_t code = length == 1 ? c : c & (0x7fu >> length);
-        for (size_t k = 1; k < length; k++) {
-            if (((unsigned char)text[i + k] & 0xc0) != 0x80)
-                return false;
-            code = code << 6 | ((unsigned char)text[i + k] & 0x3f);
-        }
-        const uint32_t least = length == 3 ? 0x800 : length == 4 ? 0x10000 : 0;
-        if (code < least || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-            return false;
-        i += length;
-    }
-    return true;
+    return camber_page_is_utf8(text, size);
 }
 
 /* The glyphs of a run that have one face, and whose characters follow each other in the text: forwards or backwards. */
@@ -309,5 +297,3 @@ camber_status camber_page_add_outlines(camber_page_fonts *f, cairo_t *cr, const 
     }
     return status;
 }
-
-#endif

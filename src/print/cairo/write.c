@@ -2,8 +2,6 @@
  *
  * Cairo keeps a page in memory until it is complete. Rows of a picture are drawn band by band, so a poster needs no
  * more memory than its bands: the renderer draws the map, and Cairo the rest into each band. */
-#ifdef CAMBER_CAIRO
-
 #include "print/page.h"
 
 #include <cairo-pdf.h>
@@ -27,14 +25,15 @@ static cairo_status_t write_bytes(void *user, const unsigned char *bytes, unsign
     return s->refused ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
 }
 
-/* A file must not depend on when it was made, unless SOURCE_DATE_EPOCH asks for a date. */
+/* A file must not depend on when it was made, so it always says the same date: Cairo's default is the time of day.
+ * SOURCE_DATE_EPOCH is not read. */
 static void describe(const camber_page *page, cairo_surface_t *surface) {
     char creator[64];
     snprintf(creator, sizeof creator, "camber %s", camber_version());
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, creator);
     if (page->desc.title)
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, page->desc.title);
-    if (page->credit)
+    if (page->credit && camber_page_is_utf8(page->credit, strlen(page->credit)))
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_AUTHOR, page->credit);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
 }
@@ -70,10 +69,10 @@ static camber_status draw_page(camber_page *page, camber_page_map *map, const ca
     cairo_scale(cr, POINTS_PER_INCH / info->dpi, POINTS_PER_INCH / info->dpi);
     set_font_options(cr);
     cairo_save(cr);
-    cairo_rectangle(cr, info->map_x, info->map_y, info->map_width, info->map_height);
-    cairo_clip(cr);
+    camber_status status = camber_page_clip(page, cr);
     cairo_translate(cr, (double)info->map_x - crop->x, (double)info->map_y - crop->y);
-    camber_status status = camber_page_draw_map(map);
+    if (status == CAMBER_OK)
+        status = camber_page_draw_map(map);
     cairo_restore(cr);
     if (status == CAMBER_OK)
         status = camber_page_draw_marginalia(page, &map->parts, &own, cr);
@@ -91,8 +90,11 @@ static camber_status end_page(camber_page *page, cairo_t *cr, cairo_surface_t *s
         return CAMBER_ERROR_IO;
     if (failed == CAIRO_STATUS_SUCCESS)
         return CAMBER_OK;
-    return camber_fail(page->context, failed == CAIRO_STATUS_NO_MEMORY ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_IO,
-                       "page: Cairo cannot write it (%s)", cairo_status_to_string(failed));
+    const bool misused = failed == CAIRO_STATUS_INVALID_SIZE || failed == CAIRO_STATUS_INVALID_STRING;
+    const camber_status status = failed == CAIRO_STATUS_NO_MEMORY ? CAMBER_ERROR_MEMORY
+                                 : misused                        ? CAMBER_ERROR_ARGUMENT
+                                                                  : CAMBER_ERROR_IO;
+    return camber_fail(page->context, status, "page: Cairo cannot write it (%s)", cairo_status_to_string(failed));
 }
 
 camber_status camber_page_write(camber_page *page, camber_scene *scene, camber_renderer *renderer, camber_mesh *mesh,
@@ -151,18 +153,26 @@ typedef struct sheet {
 
 enum { BAND_ROWS = 64 };
 
-/* Draws what the page adds into a band, and sends it on. */
-static bool send_band(sheet *s, uint32_t row_count) {
-    const uint32_t width = s->page->info.width;
-    cairo_surface_t *surface =
-        cairo_image_surface_create_for_data(s->band, CAIRO_FORMAT_ARGB32, (int)width, (int)row_count, (int)(4 * width));
+/* Draws what the page adds into the columns of a band from x on. */
+static cairo_status_t draw_columns(const sheet *s, uint32_t x, uint32_t count, uint32_t row_count) {
+    cairo_surface_t *surface = cairo_image_surface_create_for_data(
+        s->band + 4 * (size_t)x, CAIRO_FORMAT_ARGB32, (int)count, (int)row_count, (int)(4 * s->page->info.width));
     cairo_t *cr = cairo_create(surface);
-    cairo_set_source_surface(cr, s->drawing, 0.0, -(double)s->next);
+    cairo_set_source_surface(cr, s->drawing, -(double)x, -(double)s->next);
     cairo_paint(cr);
     const cairo_status_t drawn = cairo_status(cr);
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     cairo_surface_destroy(surface);
+    return drawn;
+}
+
+/* Draws what the page adds into a band, and sends it on. */
+static bool send_band(sheet *s, uint32_t row_count) {
+    const uint32_t width = s->page->info.width;
+    cairo_status_t drawn = CAIRO_STATUS_SUCCESS;
+    for (uint32_t x = 0; x < width && drawn == CAIRO_STATUS_SUCCESS; x += CAMBER_PAGE_TILE_PX)
+        drawn = draw_columns(s, x, width - x < CAMBER_PAGE_TILE_PX ? width - x : CAMBER_PAGE_TILE_PX, row_count);
     if (drawn != CAIRO_STATUS_SUCCESS) {
         s->status = camber_fail(s->page->context, CAMBER_ERROR_MEMORY, "page: Cairo cannot draw a band of it (%s)",
                                 cairo_status_to_string(drawn));
@@ -268,5 +278,3 @@ camber_status camber_page_render(camber_page *page, camber_scene *scene, camber_
     camber_free(page->context, s.band);
     return status;
 }
-
-#endif

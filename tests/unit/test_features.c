@@ -292,6 +292,26 @@ static void test_restyle(void **state) {
     assert_int_equal(camber_features_restyle(it->features, &it->style), CAMBER_OK);
 }
 
+/* What is kept for a set is made again after each change, even if the set is as large as before. */
+static void test_key(void **state) {
+    fixture *it = *state;
+    const camber_features_mark mark = camber_features_get_mark(it->features);
+    uint64_t keys[5] = {camber_features_key(it->features)};
+    assert_true(camber_features_key(it->features) == keys[0]);
+    assert_int_equal(camber_features_restyle(it->features, &it->style), CAMBER_OK);
+    keys[1] = camber_features_key(it->features);
+    camber_features_reset(it->features, &mark);
+    keys[2] = camber_features_key(it->features);
+    assert_int_equal(
+        camber_features_merge_and_weigh(it->features, it->features->polyline_count, true, CAMBER_MERGE_ANY), CAMBER_OK);
+    keys[3] = camber_features_key(it->features);
+    camber_features_release_points(it->features);
+    keys[4] = camber_features_key(it->features);
+    for (size_t i = 0; i < 5; i++)
+        for (size_t k = 0; k < i; k++)
+            assert_true(keys[i] != keys[k]);
+}
+
 static void test_attribution(void **state) {
     fixture *it = *state;
     camber_features *set = it->features;
@@ -374,6 +394,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_no_properties, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bounds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_restyle, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_key, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_read_values, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_attribution, set_up, tear_down),
         cmocka_unit_test(test_out_of_memory),

@@ -292,8 +292,8 @@ static void test_restyle(void **state) {
     assert_int_equal(camber_features_restyle(it->features, &it->style), CAMBER_OK);
 }
 
-/* The key changes with each change of the set, even if the set is as large as before, so that whatever is kept for it is
- * made again. */
+/* The key changes with each change of the set, even if the set is as large as before, so that whatever is kept for it
+ * is made again. */
 static void test_key(void **state) {
     fixture *it = *state;
     const camber_features_mark mark = camber_features_get_mark(it->features);

@@ -84,7 +84,7 @@ function serve(work) {
 
 async function check(page, work, zoom, maps) {
     const center = cornerAt(CENTER, zoom), drawn = join(work, 'drawn.png');
-    execFileSync(tool, ['render', '-q', '--no-labels', '-f', input, '--center', center.map(value => value.toFixed(12)).join(','), '--zoom',
+    execFileSync(tool, ['render', '-q', '-f', input, '--center', center.map(value => value.toFixed(12)).join(','), '--zoom',
         String(zoom), '--size', `${SIDE}x${SIDE}`, '-o', drawn]);
     let all = true;
     for (const [name, map, url] of maps) {

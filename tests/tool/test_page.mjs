@@ -98,7 +98,7 @@ async function checkPixels(page, blank, url, what) {
     await page.goto(url + hashAt(corner));
     await page.reload(); // another hash alone loads nothing
     await waitForTiles(page);
-    execFileSync(tool, ['render', '-q', '--no-labels', '-f', input, ...DRAWN, '--zoom', String(ZOOM), '--center',
+    execFileSync(tool, ['render', '-q', '-f', input, ...DRAWN, '--zoom', String(ZOOM), '--center',
         corner.map(value => value.toFixed(12)).join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', drawn]);
     await page.evaluate(() => document.querySelectorAll('.card').forEach(card => card.style.visibility = 'hidden'));
     const found = await comparePictures(blank, await shoot(page, 'shown'), readFileSync(drawn));

@@ -5,7 +5,7 @@
 # linked with is not there where it runs: the libraries lie in $OUT/lib beside it, with libc's own left out, and each
 # program finds them by an rpath, which unlike a runpath holds for what the libraries themselves want.
 
-cmake -S "$SRC/camber" -B "$WORK/camber" -G Ninja -DCMAKE_BUILD_TYPE=None -DCAMBER_FUZZ=ON \
+cmake -S "$SRC/camber" -B "$WORK/camber" -G Ninja -DCMAKE_BUILD_TYPE=None -DCAMBER_FUZZ=ON -DCAMBER_CPU=OFF \
     -DCAMBER_FUZZ_ENGINE="$LIB_FUZZING_ENGINE" -DCMAKE_BUILD_RPATH='$ORIGIN/lib' \
     -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags
 cmake --build "$WORK/camber" --target fuzz_targets

@@ -16,7 +16,7 @@ const VIEWS = [['roads', 14], ['roads', 12.3], ['roads', 14.62], ['roads', 15.9]
 // Of 255, of all channels: points are rounded, and simplified for the tiles' zoom; areas have four samples a pixel.
 const MEAN = {roads: 0.25, lines: 0.25, areas: 0.4};
 // Of 255, a pixel's largest channel. A point that is rounded may decide between miter and bevel, and shift a dash.
-const WORST = {roads: 40, lines: 255, areas: 96};
+const WORST = {roads: 128, lines: 255, areas: 96};
 const moveFrom = (from, to) =>
     ['interpolate', ['linear'], ['zoom'], 12, ['literal', from], 16, ['literal', to]];
 // All that the page draws of lines.

@@ -80,7 +80,7 @@ static const struct {
      40},
     {"areas of images at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills + 2}, {0.7, 0.002, 0.0005}, 40},
     {"areas at 40 degrees", CAMBER_CAP_BUTT, {.fill = fills}, {0.2, 0.002, 0.0005}, 40},
-    {"glyphs with halos", CAMBER_CAP_ROUND, {0}, {2.6, 0.037, 0.0005}, .glyphs = true},
+    {"glyphs with halos", CAMBER_CAP_ROUND, {0}, {2.6, 0.037, 0.0015}, .glyphs = true},
 };
 _Static_assert((int)SIDE_PX == (int)CAMBER_SHEET_SIDE_PX, "all rows have pictures of one size");
 

@@ -180,7 +180,7 @@ CLONE
         echo 'curl -fsS http://127.0.0.1:$port/12/659/1593.png | od -An -c -N4 | grep -q "P   N   G"'
         echo 'kill $server && wait $server'
         echo 'ls /usr/share/man/man1/camber.1.gz /usr/share/man/man1/camber-tiles.1.gz /usr/share/man/man1/camber-serve.1.gz /usr/share/man/man3/camber.3.gz'
-        echo 'find /root/here/cache -type f; rm -rf /root/here/*'
+        echo 'if [ -d /root/here/cache ]; then find /root/here/cache -type f; fi; rm -rf /root/here/*'
         echo "apt-get purge -y \$(dpkg-query -W -f '\${Package}\\n' '*camber*')"
         # Nothing is left that was camber's, by its package or by its name, and nothing that was written since, wherever it
         # may be; what dpkg, apt and ldconfig keep for themselves is theirs.

@@ -85,6 +85,19 @@ static void test_dark(void **state) {
     draw_place(state, &GARDENS, "monaco-dark", CAMBER_THEME_DARK);
 }
 
+/* Draws a scene's network. false: the back end is not here. */
+static bool draw_scene(const fixture *s, int backend, camber_scene *map, picture *drawn) {
+    camber_mesh *mesh = NULL;
+    if (!s->on.renderer[backend])
+        return false;
+    assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[backend], &mesh), CAMBER_OK);
+    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    const camber_frame frame = camber_scene_get_frame(map, mesh);
+    *drawn = picture_draw(s->on.renderer[backend], &frame);
+    camber_mesh_destroy(mesh);
+    return true;
+}
+
 /* Text of 10, 12 and 16 px in the scripts of the shipped font, dark on light with halos and light on dark; along a
  * line, and turned with a blurred halo. */
 static void test_words(void **state) {
@@ -107,18 +120,13 @@ static void test_words(void **state) {
     assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
     assert_int_equal(camber_scene_get_info(map).labels, 8);
     for (int b = 0; b < CAMBER_FIXTURE_DRAWERS && good; b++) {
-        camber_mesh *mesh = NULL;
-        if (!s->on.renderer[b])
+        picture drawn;
+        if (!draw_scene(s, b, map, &drawn))
             continue;
-        assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[b], &mesh), CAMBER_OK);
-        assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-        const camber_frame frame = camber_scene_get_frame(map, mesh);
-        picture drawn = picture_draw(s->on.renderer[b], &frame);
         good = golden_judge(s, "words", &drawn);
         if (!good)
             printf("words: not as they should be with %s\n", fixture_name(b));
         picture_free(&drawn);
-        camber_mesh_destroy(mesh);
     }
     camber_scene_destroy(map);
     camber_features_destroy(features);
@@ -136,19 +144,14 @@ static void test_demo(void **state) {
     camber_scene *map = load(s->context, &DEMO, CAMBER_THEME_LIGHT, &style, &features);
     assert_non_null(file.rgba);
     for (int b = 0; b < CAMBER_FIXTURE_DRAWERS; b++) {
-        camber_mesh *mesh = NULL;
-        if (!s->on.renderer[b])
+        picture drawn;
+        if (!draw_scene(s, b, map, &drawn))
             continue;
-        assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[b], &mesh), CAMBER_OK);
-        assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-        const camber_frame frame = camber_scene_get_frame(map, mesh);
-        picture drawn = picture_draw(s->on.renderer[b], &frame);
         const difference apart = picture_compare(&drawn, &shown);
         printf("# the demo with %s: %.4f of 255 on average, %d at most, %zu pixels past 8\n", fixture_name(b),
                apart.mean, apart.most, apart.past_8);
         assert_true(apart.mean < 1 && apart.past_8 <= apart.drawn / 50);
         picture_free(&drawn);
-        camber_mesh_destroy(mesh);
     }
     camber_scene_destroy(map);
     camber_features_destroy(features);

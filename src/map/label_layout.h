@@ -80,6 +80,8 @@ typedef struct camber_label_window {
 #define CAMBER_LABEL_STEP_PX (1.0 / 4096.0)
 /* In a domain, no label is shown whose shapes or pixels reach farther than this from its anchor. */
 #define CAMBER_LABEL_REACH_PX 512.0
+/* The tolerance to which lines that labels follow are simplified: device px of a view, CSS px of a domain. */
+#define CAMBER_LABEL_SIMPLIFY_PX 0.25
 
 static inline double camber_label_snap(double px) {
     return floor(px / CAMBER_LABEL_STEP_PX + 0.5) * CAMBER_LABEL_STEP_PX;

@@ -1,9 +1,6 @@
 /* Places the labels of a view: things, layout, placement, items. */
 #include "map/label_layout.h"
 
-/* The tolerance to which lines are simplified, as for drawing, device px. */
-static const double SIMPLIFY_PX = 0.25;
-
 struct camber_label_book {
     const camber_features *features;
     uint64_t features_key, view_key; /* what things and layout were made for */
@@ -17,7 +14,7 @@ static camber_status place(camber_label_layout *layout, const camber_view *view,
                            camber_labels *labels) {
     layout->view = view;
     layout->things = things;
-    layout->least_importance = SIMPLIFY_PX / view->scale_px;
+    layout->least_importance = CAMBER_LABEL_SIMPLIFY_PX / view->scale_px;
     *labels = (camber_labels){.context = layout->context};
     camber_status status = camber_label_layout_make(layout);
     if (status == CAMBER_OK)

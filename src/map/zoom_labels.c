@@ -20,8 +20,6 @@
 static const double WORLD_PX = 512.0;
 /* The margin that is tried first, and how much wider each next one is. */
 static const double FIRST_MARGIN_PX = 1.75 * CAMBER_LABEL_REACH_PX, WIDER = 2.0;
-/* The tolerance to which lines of labels are simplified, CSS px. */
-static const double SIMPLIFY_PX = 0.25;
 
 typedef struct label_block label_block;
 struct label_block {
@@ -152,15 +150,15 @@ static camber_status place_with_margin(camber_zoom_labels *z, label_block *block
         }
     }
     camber_label_layout_free(&block->layout);
-    block->layout =
-        (camber_label_layout){.context = z->context,
-                              .features = z->desc.features,
-                              .view = &z->view,
-                              .things = block->domain.whole ? z->desc.things : &near,
-                              .domain = &block->domain,
-                              .least_importance = (double)(float)fmax(SIMPLIFY_PX / world, z->desc.least_importance),
-                              .fonts = z->desc.features->fonts,
-                              .sprites = z->desc.features->sprites};
+    block->layout = (camber_label_layout){
+        .context = z->context,
+        .features = z->desc.features,
+        .view = &z->view,
+        .things = block->domain.whole ? z->desc.things : &near,
+        .domain = &block->domain,
+        .least_importance = (double)(float)fmax(CAMBER_LABEL_SIMPLIFY_PX / world, z->desc.least_importance),
+        .fonts = z->desc.features->fonts,
+        .sprites = z->desc.features->sprites};
     camber_status status = camber_label_layout_make(&block->layout);
     if (status == CAMBER_OK)
         status = camber_label_place_all(&block->layout);

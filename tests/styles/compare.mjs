@@ -7,12 +7,10 @@
 // that is printed, too. MapLibre's, camber's and eight times their difference stay in OUT, side by side. Exit status: 1
 // where a picture differs, 77 where something is not installed.
 import {execFileSync} from 'node:child_process';
-import {createReadStream, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync,
-    writeFileSync} from 'node:fs';
-import {createServer} from 'node:http';
+import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {extname, join, resolve} from 'node:path';
-import {comparePictures, launchBrowser, skip} from '../tool/browser.mjs';
+import {join, resolve} from 'node:path';
+import {comparePictures, launchBrowser, serveFiles, skip} from '../tool/browser.mjs';
 
 const WIDTH = 768, HEIGHT = 512, MEAN = 1.5;
 // Each view is in one tile: MapLibre cuts lines where tiles meet, camber joins them.
@@ -54,32 +52,6 @@ window.show = (style, center, zoom) => new Promise((resolve, reject) => {
     window.map = map;
 });
 </script>`;
-const TYPES = {'.js': 'text/javascript', '.mjs': 'text/javascript', '.json': 'application/json', '.png': 'image/png'};
-
-function serve() {
-    return createServer((request, response) => {
-        const path = decodeURIComponent(new URL(request.url, 'http://camber').pathname);
-        const file = path.startsWith('/modules/') ? join(modules, path.slice(8)) : join(folder, path);
-        if (path === '/') {
-            response.writeHead(200, {'Content-Type': 'text/html'});
-            response.end(PAGE);
-        } else if (!path.includes('..') && existsSync(file) && statSync(file).isFile()) {
-            send(request, response, file);
-        } else {
-            response.writeHead(404);
-            response.end();
-        }
-    });
-}
-// The bytes of a file that a request names: archives are read by ranges.
-function send(request, response, file) {
-    const size = statSync(file).size, range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
-    const start = range ? Number(range[1]) : 0, end = range ? Math.min(Number(range[2]), size - 1) : size - 1;
-    response.writeHead(range ? 206 : 200, {'Content-Type': TYPES[extname(file)] ?? 'application/octet-stream',
-        'Content-Length': end - start + 1, ETag: '"1"',
-        ...(range && {'Content-Range': `bytes ${start}-${end}/${size}`})});
-    createReadStream(file, {start, end}).pipe(response);
-}
 
 // ---- The pictures ----
 
@@ -147,7 +119,8 @@ async function check(page, name, view, own, work) {
     return right;
 }
 
-const work = mkdtempSync(join(tmpdir(), 'camber-styles-')), server = serve();
+const work = mkdtempSync(join(tmpdir(), 'camber-styles-')), server = serveFiles(PAGE,
+    path => path.startsWith('/modules/') ? join(modules, path.slice(8)) : join(folder, path));
 let right = true;
 try {
     mkdirSync(out, {recursive: true});

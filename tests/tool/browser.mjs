@@ -1,9 +1,10 @@
 // What the tests that drive Debian's Chromium share: starting it, and comparing what it shows with what camber draws.
 import {spawn} from 'node:child_process';
-import {existsSync, readFileSync} from 'node:fs';
+import {createReadStream, existsSync, readFileSync, statSync} from 'node:fs';
+import {createServer as createHttpServer} from 'node:http';
 import {createRequire} from 'node:module';
 import {createServer} from 'node:net';
-import {join} from 'node:path';
+import {extname, join} from 'node:path';
 
 const modules = process.env.NODE_PATH ?? '';
 export const PATIENCE_MS = 240000; // for what happens at once on an idle machine: only what hangs takes longer
@@ -85,6 +86,32 @@ export function cornerAt([longitude, latitude], zoom) {
     const tiles = 2 ** (zoom + 1), y = (1 - Math.asinh(Math.tan(latitude * Math.PI / 180)) / Math.PI) / 2;
     const column = Math.round((longitude + 180) / 360 * tiles) / tiles, row = Math.round(y * tiles) / tiles;
     return [column * 360 - 180, Math.atan(Math.sinh((1 - 2 * row) * Math.PI)) * 180 / Math.PI];
+}
+
+// A server of a page, at /, and of files: fileOf names that of a path. Archives are read by ranges.
+const TYPES = {'.css': 'text/css', '.js': 'text/javascript', '.json': 'application/json', '.mjs': 'text/javascript',
+    '.png': 'image/png'};
+function sendFile(request, response, file) {
+    const size = statSync(file).size, range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
+    const start = range ? Number(range[1]) : 0, end = range ? Math.min(Number(range[2]), size - 1) : size - 1;
+    response.writeHead(range ? 206 : 200, {'Content-Type': TYPES[extname(file)] ?? 'application/octet-stream',
+        'Content-Length': end - start + 1, ETag: '"1"',
+        ...(range && {'Content-Range': `bytes ${start}-${end}/${size}`})});
+    createReadStream(file, {start, end}).pipe(response);
+}
+export function serveFiles(page, fileOf) {
+    return createHttpServer((request, response) => {
+        const path = decodeURIComponent(new URL(request.url, 'http://camber').pathname), file = fileOf(path);
+        if (path === '/') {
+            response.writeHead(200, {'Content-Type': 'text/html'});
+            response.end(page);
+        } else if (!path.includes('..') && existsSync(file) && statSync(file).isFile()) {
+            sendFile(request, response, file);
+        } else {
+            response.writeHead(404);
+            response.end();
+        }
+    });
 }
 
 // Compares two PNGs in a page that allows data: URLs. `most` is the largest difference of a channel, `off` counts the

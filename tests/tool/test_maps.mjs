@@ -5,12 +5,10 @@
 // shows tiles pixel by pixel: its centre is a corner of tiles, and its zoom theirs. Pictures of views that fail stay in
 // FOLDER. Exit status: 1 where they differ, 77 where something is not installed.
 import {execFileSync} from 'node:child_process';
-import {createServer} from 'node:http';
-import {closeSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, readSync, rmSync, statSync,
-    writeFileSync} from 'node:fs';
+import {mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {extname, join} from 'node:path';
-import {comparePictures, cornerAt, launchBrowser, startServe} from './browser.mjs';
+import {join} from 'node:path';
+import {comparePictures, cornerAt, launchBrowser, serveFiles, startServe} from './browser.mjs';
 
 const SIDE = 768, TILE = 256, CENTER = [-122.0268, 36.9735], ZOOMS = [12, 14, 15];
 // camber's own promise across the pictures that tiles are cut from. The map shows texels as they are: nothing is added.
@@ -51,34 +49,7 @@ function showByOpenLayers(url, center, zoom) {
 }
 window.show = {maplibre: showByMapLibre, openlayers: showByOpenLayers};
 </script>`;
-const TYPES = {'.js': 'text/javascript', '.mjs': 'text/javascript', '.css': 'text/css'};
 
-// The bytes of a file that a request names: PMTiles are read by ranges.
-function send(request, response, path) {
-    const size = statSync(path).size, range = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
-    const first = range ? Number(range[1]) : 0, last = range ? Math.min(Number(range[2]), size - 1) : size - 1;
-    const bytes = Buffer.alloc(last - first + 1), file = openSync(path);
-    readSync(file, bytes, 0, bytes.length, first);
-    closeSync(file);
-    response.writeHead(range ? 206 : 200, {'Content-Type': TYPES[extname(path)] ?? 'application/octet-stream',
-        'Content-Length': bytes.length, ETag: '"1"', ...(range && {'Content-Range': `bytes ${first}-${last}/${size}`})});
-    response.end(bytes);
-}
-function serve(work) {
-    return createServer((request, response) => {
-        const path = new URL(request.url, 'http://camber').pathname;
-        const file = path === '/city.pmtiles' ? join(work, 'city.pmtiles') : join(modules, path);
-        if (path === '/') {
-            response.writeHead(200, {'Content-Type': 'text/html'});
-            response.end(PAGE);
-        } else if (!path.includes('..') && existsSync(file) && statSync(file).isFile()) {
-            send(request, response, file);
-        } else {
-            response.writeHead(404);
-            response.end();
-        }
-    });
-}
 
 // ---- The views ----
 
@@ -108,7 +79,8 @@ async function check(page, work, zoom, maps) {
 }
 
 const work = mkdtempSync(join(tmpdir(), 'camber-maps-'));
-const server = serve(work), served = await startServe(tool, [input]);
+const server = serveFiles(PAGE, path => path === '/city.pmtiles' ? join(work, 'city.pmtiles') : join(modules, path)),
+    served = await startServe(tool, [input]);
 let right = true;
 try {
     // With empty tiles: else the page shows through where there is the background alone.

@@ -4,6 +4,7 @@
  * tested at the last zoom first, because most styles draw everything there. */
 #include "features/mercator.h"
 #include "map/plan.h"
+#include "style/expression.h"
 
 #include <math.h>
 
@@ -30,27 +31,34 @@ static bool draws_at(const camber_features *features, const camber_feature_class
 
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom) {
+    if (camber_geometry_is_label(class->geometry))
+        return false;
     bool any = draws_at(features, class, max_zoom);
     for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
         any = draws_at(features, class, zoom);
     return any;
 }
 
-static bool labels_at(const camber_features *features, const camber_feature_class *class, double zoom) {
-    for (size_t i = 0; i < features->style->layer_count; i++)
-        if (camber_plan_labels(features, features->style->layers + i, zoom, class))
-            return true;
-    return false;
+/* Whether a layer labels the class at any of the zooms. There are many classes, because names differ, so a filter that
+ * does not read the zoom is evaluated once. */
+static bool layer_labels(const camber_features *features, const camber_style_layer *layer,
+                         const camber_feature_class *class, double min_zoom, double max_zoom) {
+    const bool reads_zoom = layer->filter && layer->filter->reads_zoom;
+    const bool active = layer->min_zoom <= max_zoom && (max_zoom < layer->max_zoom || layer->max_zoom >= 24.0);
+    bool any = camber_plan_labels(features, layer, max_zoom, class);
+    for (double zoom = min_zoom; zoom < max_zoom && !any && (reads_zoom || !active); zoom += 1.0)
+        any = camber_plan_labels(features, layer, zoom, class);
+    return any;
 }
 
 /* Whether features of the class have labels at any of the zooms, if labels are drawn. */
 static bool labels(const camber_features *features, const camber_feature_class *class, double min_zoom,
                    double max_zoom) {
-    if (!features->fonts || !camber_geometry_is_label(class->geometry))
+    if (!features->fonts || !class->labelled || !camber_geometry_is_label(class->geometry))
         return false;
-    bool any = labels_at(features, class, max_zoom);
-    for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
-        any = labels_at(features, class, zoom);
+    bool any = false;
+    for (size_t i = 0; i < features->style->layer_count && !any; i++)
+        any = layer_labels(features, features->style->layers + i, class, min_zoom, max_zoom);
     return any;
 }
 

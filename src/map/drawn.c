@@ -3,6 +3,7 @@
  * Input: features and zooms. Output: whether a class is drawn, and the box of everything that is drawn. A class is
  * tested at the last zoom first, because most styles draw everything there. */
 #include "features/mercator.h"
+#include "map/label_things.h"
 #include "map/plan.h"
 #include "style/expression.h"
 
@@ -64,17 +65,11 @@ static bool labels(const camber_features *features, const camber_feature_class *
 
 /* ---- The box ---- */
 
-static void add_polyline(const camber_features *features, size_t polyline, double shift, camber_box *box) {
-    for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++)
-        if (isfinite(features->points[2 * i]) && isfinite(features->points[2 * i + 1]))
-            camber_box_add(box, features->points[2 * i] + shift, features->points[2 * i + 1]);
-}
-
-/* Whether the polyline is in the western half of the world. */
-static bool is_western(const camber_features *features, size_t polyline) {
-    camber_box box = CAMBER_BOX_EMPTY;
-    add_polyline(features, polyline, 0.0, &box);
-    return 0.5 * (box.x0 + box.x1) < 0.5;
+static void add_box(const camber_box *added, double shift, camber_box *box) {
+    if (added->x0 > added->x1)
+        return;
+    camber_box_add(box, added->x0 + shift, added->y0);
+    camber_box_add(box, added->x1 + shift, added->y1);
 }
 
 camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom,
@@ -90,8 +85,9 @@ camber_status camber_plan_drawn_box(const camber_features *features, double min_
     for (size_t p = 0; p < features->polyline_count && features->points; p++) {
         if (!drawn[features->feature_class[features->polyline_feature[p]]])
             continue;
-        add_polyline(features, p, 0.0, box);
-        add_polyline(features, p, is_western(features, p) ? 1.0 : 0.0, &moved);
+        const camber_box own = camber_label_box_of(features, p, p + 1);
+        add_box(&own, 0.0, box);
+        add_box(&own, 0.5 * (own.x0 + own.x1) < 0.5 ? 1.0 : 0.0, &moved);
     }
     if (moved.x1 - moved.x0 < box->x1 - box->x0)
         *box = moved;

@@ -7,7 +7,8 @@
  * metatiles, so that the edges of these are inside. The last test counts faults of labels that each tile places for its
  * own view, to see that there are some.
  *
- * CAMBER_SEAM_SQUARES: how many squares of each zoom (2). CAMBER_SEAM_MILLIONS: points of the country (0.3). */
+ * CAMBER_SEAM_SQUARES: how many squares of each zoom (2). CAMBER_SEAM_MILLIONS: points of the country (1.5).
+ * CAMBER_SEAM_TILES: vector tiles that the style openmaptiles draws (none). */
 #include "core.h"
 #include "label_seams.h"
 
@@ -260,35 +261,39 @@ static void check_map(const char *name, const char *path, const char *style, siz
         printf("# %s, %s, placed by %s: %zu labels in tiles, %zu cross a border: %zu cut, %zu doubled, %zu missing, "
                "%zu of no picture\n",
                name, style, found[way].name, f->shown, f->crossing, f->cut, f->doubled, f->missing, f->extra);
-        assert_true(f->shown > expected / 4 && f->crossing > expected / 8);
+        assert_true(f->shown > expected / 4 && f->crossing > expected / 10);
         assert_int_equal(seam_count(f), 0);
     }
 }
 
-static void test_city(const char *name, const char *file) {
+static void test_city(const char *name, const char *file, bool has_transit) {
     char path[1024];
     snprintf(path, sizeof path, "%s/data/%s", data_folder(), file);
     check_map(name, path, "city", 600);
     check_map(name, path, "roads", 100);
-    check_map(name, path, "transit", 10);
+    if (has_transit)
+        check_map(name, path, "transit", 100);
 }
 
 static void test_porto(void **state) {
     (void)state;
-    test_city("Porto", "porto_portugal.osm.pbf");
+    test_city("Porto", "porto_portugal.osm.pbf", false);
 }
 
 static void test_new_york(void **state) {
     (void)state;
-    test_city("New York", "nyc.osm.pbf");
+    test_city("New York", "nyc.osm.pbf", true);
 }
 
-/* Vector tiles, for the style that draws OpenMapTiles. */
+/* Vector tiles, which cut streets: their parts are joined before they are named. */
 static void test_vector_tiles(void **state) {
     (void)state;
     char path[1024];
     snprintf(path, sizeof path, "%s/data/osm.mbtiles", data_folder());
-    check_map("Santa Cruz", path, "openmaptiles", 100);
+    check_map("Santa Cruz", path, "city", 300);
+    const char *tiles = getenv("CAMBER_SEAM_TILES");
+    if (tiles && tiles[0])
+        check_map(tiles, tiles, "openmaptiles", 300);
 }
 
 /* ---- The made-up country ---- */
@@ -304,7 +309,7 @@ static void test_country(void **state) {
     folder_make(folder);
     snprintf(path, sizeof path, "%s/country.osm.pbf", folder);
     int length =
-        snprintf(command, sizeof command, "'%s' '%s' %g", CAMBER_COUNTRY, path, number_of("CAMBER_SEAM_MILLIONS", 0.3));
+        snprintf(command, sizeof command, "'%s' '%s' %g", CAMBER_COUNTRY, path, number_of("CAMBER_SEAM_MILLIONS", 1.5));
     for (size_t i = 0; i < sizeof cities / sizeof *cities; i++)
         length += snprintf(command + length, sizeof command - (size_t)length, " '%s/data/%s.osm.pbf'", data_folder(),
                            cities[i]);

@@ -231,6 +231,13 @@ static void write_name_rule(size_t name, FILE *file) {
             texts[name].size_px, halo_px, texts[name].along ? "line" : "point", SPACING_PX, SPACING_PX / 2);
 }
 
+/* Whether the city has features of the name. */
+static bool has_features(const bench_pyramid *p, const char *name) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s.shp", p->folder, name);
+    return access(path, R_OK) == 0;
+}
+
 /* Ends a style and adds the layer that it draws. */
 static void write_layer(const bench_pyramid *p, const char *id, const char *type, const char *source, FILE *file) {
     fprintf(file,
@@ -249,6 +256,8 @@ static bool write_map(const bench_pyramid *p, const char *type) {
     fprintf(file,
             "<Map srs=\"epsg:3857\" background-color=\"" BACKGROUND "\" font-directory=\"" CAMBER_BENCH_FONTS "\">\n");
     for (size_t i = 0; i < AREAS && p->labelled; i++) {
+        if (!has_features(p, areas[i].name))
+            continue;
         fprintf(file, "<Style name=\"%s\">", areas[i].name);
         write_area_rule(i, file);
         write_layer(p, areas[i].name, type, areas[i].name, file);
@@ -260,6 +269,8 @@ static bool write_map(const bench_pyramid *p, const char *type) {
         write_layer(p, id, type, classes[i % CLASSES].name, file);
     }
     for (size_t i = NAMES; i-- > 0 && p->labelled;) { /* Mapnik places the first layer's names first */
+        if (!has_features(p, texts[i].name))
+            continue;
         snprintf(id, sizeof id, "names of %s", texts[i].name);
         fprintf(file, "<Style name=\"%s\">", id);
         write_name_rule(i, file);
@@ -269,15 +280,16 @@ static bool write_map(const bench_pyramid *p, const char *type) {
     return fclose(file) == 0;
 }
 
-/* Writes features of the city as NAME.geojson and NAME.shp. */
+/* Writes features of the city as NAME.geojson and, if there are any, NAME.shp. */
 static bool write_features(const bench_pyramid *p, const char *name, const char *layer, const char *where,
                            const char *fields) {
     char command[COMMAND_SIZE];
     snprintf(command, sizeof command,
              "ogr2ogr -q -f GeoJSON %s.geojson %s %s -where \"%s\" -select %s -t_srs EPSG:3857 "
-             "-lco COORDINATE_PRECISION=2 2>ogr.log && ogr2ogr -q -lco ENCODING=UTF-8 %s.shp %s.geojson 2>ogr.log && "
-             "{ ! command -v shapeindex || shapeindex %s.shp 2>index.log; }",
-             name, p->city, layer, where, fields, name, name, name);
+             "-lco COORDINATE_PRECISION=2 2>ogr.log && { ! grep -q coordinates %s.geojson || "
+             "{ ogr2ogr -q -lco ENCODING=UTF-8 %s.shp %s.geojson 2>ogr.log && "
+             "{ ! command -v shapeindex || shapeindex %s.shp 2>index.log; } } }",
+             name, p->city, layer, where, fields, name, name, name, name);
     return bench_pyramid_shell(p, command) >= 0;
 }
 

@@ -247,14 +247,14 @@ static void add_labelled(const char *key, const char *name, const bench_pyramid 
         add_ratio(result, key, "tiles with labels", "renderd", ms[LABELS_RENDERD] / ms[LABELS_SAME]);
 }
 
-/* Porto: zooms 12 to 16, at which streets have names. */
-static bool measure_labelled_city(bench *b, json_t *result) {
+/* At zooms 12 to 16 streets have names. Porto's file has next to no areas. */
+static bool measure_labelled_city(bench *b, const char *scene, const char *key, const char *name, json_t *result) {
     static const label_way all[] = {LABELS_CITY,      LABELS_CITY_BARE, LABELS_SAME,
                                     LABELS_SAME_BARE, LABELS_MAPNIK,    LABELS_RENDERD};
     static const int deepest[] = {16, 14, 12};
     bench_pyramid p = {.min_zoom = 12, .max_zoom = deepest[b->size], .labelled = true};
     label_times times = {.tiles = {0}};
-    if (!bench_scene_path(b, "porto", p.city, sizeof p.city))
+    if (!bench_scene_path(b, scene, p.city, sizeof p.city))
         return true;
     json_t *said = bench_pyramid_open(&p) ? run_labelled(b, &p, LABELS_SAME) : NULL; /* the file comes from the disk */
     bool done = said && read_box(b, &p);
@@ -262,7 +262,7 @@ static bool measure_labelled_city(bench *b, json_t *result) {
     const bool peers = done && b->size != BENCH_TINY && bench_pyramid_write_maps(&p);
     done = done && measure_label_ways(b, &p, &times, all, peers ? LABEL_WAYS : LABELS_MAPNIK);
     if (done)
-        add_labelled("porto_labels", "Porto with labels", &p, &times, result);
+        add_labelled(key, name, &p, &times, result);
     bench_pyramid_close(&p);
     return done;
 }
@@ -416,7 +416,9 @@ static json_t *measure(bench *b, const char *only) {
         if (!only || strcmp(only, cities[i][0]) == 0)
             done = measure_city(b, cities[i][0], cities[i][1], result);
     if (done && (!only || strcmp(only, "porto_labels") == 0))
-        done = measure_labelled_city(b, result);
+        done = measure_labelled_city(b, "porto", "porto_labels", "Porto with labels", result);
+    if (done && b->size != BENCH_TINY && (!only || strcmp(only, "nyc_labels") == 0))
+        done = measure_labelled_city(b, "nyc", "nyc_labels", "New York with areas and labels", result);
     if (done && (!only || strcmp(only, "country_labels") == 0))
         done = measure_labelled_country(b, result);
     if (done && (!only || strcmp(only, "country") == 0))

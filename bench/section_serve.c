@@ -79,9 +79,12 @@ static json_t *measure(bench *b, const char *only) {
 
 static void print_load(const json_t *row, const char *way, const char *when, const char *name, FILE *to) {
     if (number_of(row, way, when, "a_second") > 0)
-        fprintf(to, "  %-40s %7.0f a second, %7.2f ms in the middle, %7.2f ms at 99 %%, %.0f failed\n", name,
-                number_of(row, way, when, "a_second"), number_of(row, way, when, "p50_ms"),
-                number_of(row, way, when, "p99_ms"), number_of(row, way, when, "failed"));
+        fprintf(to,
+                "  %-40s %7.0f a second, %7.2f ms in the middle, %7.2f ms at 99 %%, %.2f ms of processors, %.0f "
+                "failed\n",
+                name, number_of(row, way, when, "a_second"), number_of(row, way, when, "p50_ms"),
+                number_of(row, way, when, "p99_ms"), number_of(row, way, when, "cpu_ms"),
+                number_of(row, way, when, "failed"));
 }
 
 static void print_row(const json_t *row, FILE *to) {

@@ -30,6 +30,8 @@ static bool draws_at(const camber_features *features, const camber_feature_class
 
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom) {
+    if (camber_geometry_is_label(class->geometry))
+        return false;
     bool any = draws_at(features, class, max_zoom);
     for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
         any = draws_at(features, class, zoom);
@@ -46,7 +48,7 @@ static bool labels_at(const camber_features *features, const camber_feature_clas
 /* Whether features of the class have labels at any of the zooms, if labels are drawn. */
 static bool labels(const camber_features *features, const camber_feature_class *class, double min_zoom,
                    double max_zoom) {
-    if (!features->fonts || !camber_geometry_is_label(class->geometry))
+    if (!features->fonts || !class->labelled || !camber_geometry_is_label(class->geometry))
         return false;
     bool any = labels_at(features, class, max_zoom);
     for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)

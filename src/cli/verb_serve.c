@@ -217,7 +217,7 @@ static void tell_nothing(const reading *it) {
     char why[1024];
     camber_input_say_missing(&it->input);
     if (it->session->options->input_count && !it->content.has_bounds &&
-        !camber_features_explain_nothing(it->input.features, 0, 22, why, sizeof why))
+        !camber_features_explain_nothing(it->input.features, 0, DEEPEST_ZOOM, why, sizeof why))
         camber_report_warn(it->session->report, "nothing is drawn: %s", why);
 }
 

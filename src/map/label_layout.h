@@ -31,7 +31,7 @@ typedef struct camber_label_rule {
     double offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
     size_t anchor_count;
     bool variable; /* texts are shaped about their centres */
-    uint64_t hash; /* of the symbol, without the sections of its text */
+    uint64_t hash; /* the last member, which the others decide: of the symbol, without the sections of its text */
 } camber_label_rule;
 
 /* How a run of a text is drawn. */

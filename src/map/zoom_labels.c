@@ -20,6 +20,9 @@
 static const double WORLD_PX = 512.0;
 /* The margin that is tried first, and how much wider each next one is. */
 static const double FIRST_MARGIN_PX = 1.75 * CAMBER_LABEL_REACH_PX, WIDER = 2.0;
+/* The width of blocks where several small ones are wanted: with the first margin, 2.1 times its area is placed, but of
+ * a tile of 256 px 64 times. */
+static const double GROWN_PX = 4096.0;
 /* About the memory that a label takes which is kept. */
 enum { LABEL_BYTES = 1024 };
 
@@ -349,10 +352,9 @@ static bool is_divided(const camber_zoom_labels *z, const camber_label_square *s
            (z->desc.block_things == 0 || camber_label_things_count(z->desc.things, square) > z->desc.block_things);
 }
 
-/* Whether a block has the labels of a square. */
-static bool has_square(const label_block *block, const camber_label_square *square) {
-    const int shift = square->level - block->square.level;
-    return shift >= 0 && block->square.column == square->column >> shift && block->square.row == square->row >> shift;
+static bool is_inside(const camber_label_square *square, const camber_label_square *outer) {
+    const int shift = square->level - outer->level;
+    return shift >= 0 && outer->column == square->column >> shift && outer->row == square->row >> shift;
 }
 
 /* Drops the least recently used blocks but the first one, until all take little memory. */
@@ -367,18 +369,31 @@ static void drop_old(camber_label_shelf *shelf) {
     }
 }
 
+/* Returns the square for which labels are placed if those of a square are wanted. It is the square itself at first, so
+ * that the first picture is soon there, and a large one if labels near it were wanted before. */
+static camber_label_square grow(const camber_zoom_labels *z, const camber_label_square *square) {
+    camber_label_square wide = *square;
+    while (z->desc.block_things == 0 && wide.level > 0 && z->view.scale_px / exp2(wide.level) < GROWN_PX)
+        wide = (camber_label_square){wide.level - 1, wide.column / 2, wide.row / 2};
+    for (const label_block *block = z->desc.shelf->blocks; block; block = block->next)
+        if (block->owner == z && is_inside(&block->square, &wide))
+            return wide;
+    return *square;
+}
+
 /* Finds a block that has the labels of a square, or places it. It is valid until the next call. */
 static camber_status get_block(camber_zoom_labels *z, const camber_label_square *square, label_block **found) {
     camber_label_shelf *shelf = z->desc.shelf;
     label_block **at = &shelf->blocks, *block = NULL;
-    while (*at && !((*at)->owner == z && has_square(*at, square)))
+    while (*at && !((*at)->owner == z && is_inside(square, &(*at)->square)))
         at = &(*at)->next;
     if (*at) {
         block = *at;
         *at = block->next;
     } else {
-        const camber_box box = box_of(z, square, 0.0);
-        const camber_status status = make_block(z, &box, square, &block);
+        const camber_label_square placed = grow(z, square);
+        const camber_box box = box_of(z, &placed, 0.0);
+        const camber_status status = make_block(z, &box, &placed, &block);
         if (status != CAMBER_OK)
             return status;
         shelf->held_bytes += block->bytes;

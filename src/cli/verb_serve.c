@@ -216,8 +216,8 @@ static void tell_picture(void *owner, camber_status status) {
 static void tell_nothing(const reading *it) {
     char why[1024];
     camber_input_say_missing(&it->input);
-    if (it->session->options->input_count &&
-        !camber_features_explain_nothing(it->input.features, 0, 22, why, sizeof why))
+    if (it->session->options->input_count && !it->content.has_bounds &&
+        !camber_features_explain_nothing(it->input.features, 0, DEEPEST_ZOOM, why, sizeof why))
         camber_report_warn(it->session->report, "nothing is drawn: %s", why);
 }
 
@@ -229,7 +229,6 @@ static int read_map(reading *it) {
         status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    tell_nothing(it);
     it->content.source = (camber_map_source){.features = it->input.features,
                                              .styles = {it->input.style, it->dark},
                                              .simplify_px = options->simplify_px,
@@ -242,6 +241,7 @@ static int read_map(reading *it) {
     it->content.attribution = it->input.attribution;
     it->content.has_bounds = camber_features_get_drawn_bounds(it->input.features, 0, DEEPEST_ZOOM, it->content.bounds);
     it->content.max_zoom = DEEPEST_ZOOM;
+    tell_nothing(it);
     return CAMBER_EXIT_DONE;
 }
 

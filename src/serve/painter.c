@@ -19,7 +19,7 @@ struct camber_painter {
     /* Only used by the painter's thread: */
     camber_map_source source;
     bool has_source;
-    const camber_style *style; /* that the source's features have now. NULL: not known */
+    const camber_style *style; /* that the source's features have now */
     camber_tiles_engine *engines[CAMBER_MAP_SOURCE_THEMES][CAMBER_MAP_SOURCE_MOST_RATIO];
     camber_scene *scenes[CAMBER_MAP_SOURCE_THEMES];
     camber_mesh *mesh; /* for scenes */
@@ -55,7 +55,7 @@ static void take_next(camber_painter *painter) {
     close_source(painter);
     painter->source = next;
     painter->has_source = true;
-    painter->style = NULL;
+    painter->style = next.styles[0];
     painter->prepared_zoom = FIRST_PREPARED_ZOOM;
 }
 

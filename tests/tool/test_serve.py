@@ -11,6 +11,7 @@ server.
 import gzip
 import http.client
 import json
+import math
 import os
 import random
 import re
@@ -702,6 +703,63 @@ def test_tiles():
                 expect(got == wanted or (zoom > 0 and difference(decode(got), decode(wanted)) <= 1),
                        f"{zoom}/{x}/{y}: differs by {difference(decode(got), decode(wanted))}")
     expect(compared == 135 and same > 40, f"{same} of {compared} are the same")
+    server.stop()
+
+
+def make_archive(*options):
+    """What camber tiles draws of map.json: tiles by zoom, column and row."""
+    done = subprocess.run([TOOL, "tiles", "map.json", "-o", "there.mbtiles", "-q", "-f", *options], capture_output=True,
+                          text=True, timeout=PATIENCE_S, check=False)
+    expect(done.returncode == 0, done.stderr)
+    with sqlite3.connect("there.mbtiles") as base:
+        rows = base.execute("select zoom_level, tile_column, tile_row, tile_data from tiles").fetchall()
+    return {(z, x, 2 ** z - 1 - y): data for z, x, y, data in rows}
+
+
+def count_off(one, other):
+    """How many pixels differ by more than one level."""
+    return sum(sum(max(abs(p - q) for p, q in zip(a[i:i + 4], b[i:i + 4])) > 1 for i in range(0, len(a), 4))
+               for a, b in zip(one, other) if a != b)
+
+
+def test_labels():
+    """They are where camber tiles draws them, in every order of requests; a picture of a view has those of the view."""
+    write_map("map.json", count=600)
+    with open("map.json", encoding="utf-8") as file:
+        roads = json.load(file)
+    for i, road in enumerate(roads["features"]):
+        road["properties"]["name"] = f"Road {i % 40}"
+    with open("map.json", "w", encoding="utf-8") as file:
+        json.dump(roads, file)
+    zooms = ("--min-zoom", "12", "--max-zoom", "14")
+    wanted, plain = make_archive(*zooms), make_archive(*zooms, "--no-labels")
+    labelled = [key for key in wanted if wanted[key] != plain.get(key)]
+    expect(len(labelled) > 40, f"{len(labelled)} tiles have labels")
+    random.Random(3).shuffle(labelled)
+    server = Server("map.json")
+    for zoom, x, y in labelled[:50]:
+        got = decode(server.get(f"/{zoom}/{x}/{y}.png")[2])
+        worst = difference(got, decode(wanted[zoom, x, y]))
+        expect(worst <= 1, f"{zoom}/{x}/{y} differs by {worst}")
+    dense = make_archive(*zooms, "--ratio", "2")
+    for zoom, x, y in labelled[:12]:
+        worst = difference(decode(server.get(f"/{zoom}/{x}/{y}@2x.png")[2]), decode(dense[zoom, x, y]))
+        expect(worst <= 1, f"{zoom}/{x}/{y}@2x differs by {worst}")
+    there = (COLUMN / 2 ** ZOOM * 360 - 180, math.degrees(math.atan(math.sinh(math.pi * (1 - 2 * ROW / 2 ** ZOOM)))))
+    for zoom, bearing, pitch in ((13, 0, 0), (13.4, 0, 0), (13, 40, 0), (13.5, -30, 50)):
+        drawn = []
+        for options in ([], ["--no-labels"]):
+            done = subprocess.run([TOOL, "render", "map.json", "-o", "view.png", "-q", "-f", "--size", "500x400",
+                                   f"--center={there[0]:.9f},{there[1]:.9f}", "--zoom", str(zoom), f"--bearing={bearing}",
+                                   "--pitch", str(pitch), *options], capture_output=True, text=True,
+                                  timeout=PATIENCE_S, check=False)
+            expect(done.returncode == 0, done.stderr)
+            with open("view.png", "rb") as file:
+                drawn.append(decode(file.read()))
+        path = f"/static/{there[0]:.9f},{there[1]:.9f},{zoom}@{bearing},{pitch}/500x400.png"
+        got = decode(server.get(path)[2])
+        expect(count_off(*drawn) > 100, f"{path}: a view with few labels: {count_off(*drawn)}")
+        expect(difference(got, drawn[0]) <= 1, f"{path} differs by {difference(got, drawn[0])}")
     server.stop()
 
 

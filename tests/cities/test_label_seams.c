@@ -320,7 +320,7 @@ static void test_country(void **state) {
 
 /* ---- That there can be faults ---- */
 
-/* What is seen if each tile places the labels of its own view. */
+/* Each tile places the labels of its own view, as servers do that know no more. */
 static void test_views(void **state) {
     (void)state;
     enum { ZOOM = 15 };

@@ -131,7 +131,7 @@ static void test_tiles(void **state) {
     close_town(t);
 }
 
-/* ---- What is kept ---- */
+/* ---- Kept blocks ---- */
 
 enum { MOST_LISTED = 4096 };
 

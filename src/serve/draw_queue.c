@@ -17,6 +17,8 @@
 #include <string.h>
 
 enum { LARGEST_PICTURE_PX = 2048, TILE_PX = 256 };
+/* Whoever starts a server mostly asks for a picture at once, which must not wait for preparations. */
+enum { FIRST_PREPARED_MS = 200 };
 
 typedef enum unit_state {
     UNIT_FREE = 0,
@@ -286,7 +288,11 @@ static void serve_unit(camber_draw_queue *queue, unit *u) {
 
 static void run_drawing(camber_draw_queue *queue) {
     bool prepares = true;
+    const struct timespec first = camber_time_in(FIRST_PREPARED_MS);
     pthread_mutex_lock(&queue->mutex);
+    while (!queue->stops && !queue->woken && !find_oldest(queue, is_queued) &&
+           pthread_cond_timedwait(&queue->work, &queue->mutex, &first) == 0)
+        ;
     while (!queue->stops) {
         unit *u = find_oldest(queue, is_queued);
         if (u) {

@@ -37,6 +37,7 @@ typedef struct reply {
     bool has_page, has_variants; /* it needs the page's headers; it may be sent compressed to other clients */
     bool is_stream;              /* it is an event stream, and body is NULL */
     char last_modified[CAMBER_DATE_SIZE];
+    char location[64]; /* where the answer is instead; "": here */
 } reply;
 
 /* ---- Sending ---- */
@@ -78,6 +79,8 @@ static void add_headers(const request *r, const reply *a, struct MHD_Response *r
         add(response, MHD_HTTP_HEADER_LAST_MODIFIED, a->last_modified);
     if (a->has_variants)
         add(response, MHD_HTTP_HEADER_VARY, MHD_HTTP_HEADER_ACCEPT_ENCODING);
+    if (a->location[0])
+        add(response, MHD_HTTP_HEADER_LOCATION, a->location);
     if (a->has_page) {
         add(response, "Content-Security-Policy", server->policy);
         add(response, "Referrer-Policy", "no-referrer");
@@ -120,6 +123,17 @@ static enum MHD_Result send_error(request *r, int status) {
     return send_answer(r, &a);
 }
 
+/* Sends a 400 whose text says what is wrong with the request. */
+static enum MHD_Result send_refusal(request *r, const char *reason) {
+    char text[512];
+    const int length = snprintf(text, sizeof text, "400 %s\n", reason);
+    reply a = {.status = 400,
+               .body = camber_body_create(text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1),
+               .media_type = "text/plain; charset=utf-8",
+               .cache_control = "no-store"};
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
 /* Sends one of two bodies. The second is compressed, and may be NULL. */
 static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bodies[2]) {
     const bool gzip = bodies[1] && camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
@@ -130,10 +144,11 @@ static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bod
 
 /* ---- Tiles ---- */
 
-/* Returns the current content, and holds only the bodies that it returns. */
-static camber_content_view look(camber_server *server, bool dark, camber_body *bodies[2]) {
+/* Returns the current content of the requested map, and holds only the bodies that it returns. */
+static camber_content_view look(camber_server *server, const camber_route_request *route, camber_body *bodies[2]) {
+    const bool dark = route->dark;
     pthread_mutex_lock(&server->mutex);
-    const camber_content_view view = server->view;
+    const camber_content_view view = server->maps[route->map].view;
     for (int i = 0; bodies && i < 2; i++)
         bodies[i] = view.tilejson[dark][i] ? camber_body_hold(view.tilejson[dark][i]) : NULL;
     pthread_mutex_unlock(&server->mutex);
@@ -156,13 +171,14 @@ static bool find_stored(camber_server *server, const camber_route_request *route
     const camber_tiles_place place = {route->zoom, route->column, route->row};
     const uint8_t *bytes = NULL;
     size_t size_bytes = 0;
+    camber_served_map *map = server->maps + route->map;
     if ((*body = camber_tile_cache_get(server->cache, key)) != NULL)
         return true;
-    pthread_mutex_lock(&server->reader_mutex);
-    const uint64_t generation = camber_tile_cache_get_generation(server->cache);
-    const camber_status status = camber_tiles_reader_read(server->reader, &place, &bytes, &size_bytes);
+    pthread_mutex_lock(&map->reader_mutex);
+    const uint64_t generation = camber_tile_cache_get_generation(server->cache, route->map);
+    const camber_status status = camber_tiles_reader_read(map->reader, &place, &bytes, &size_bytes);
     *body = status == CAMBER_OK && size_bytes ? camber_body_create(bytes, size_bytes) : NULL;
-    pthread_mutex_unlock(&server->reader_mutex);
+    pthread_mutex_unlock(&map->reader_mutex);
     if (*body)
         camber_tile_cache_put(server->cache, key, *body, generation);
     return status == CAMBER_OK && (*body || size_bytes == 0);
@@ -204,7 +220,7 @@ static enum MHD_Result answer_stored(request *r, const camber_content_view *view
 
 /* Answers with the tileset of a folder of mesh tiles. Its files are identified by numbers only. */
 static enum MHD_Result answer_tileset(request *r) {
-    const camber_content_view view = look(r->listener->server, false, NULL);
+    const camber_content_view view = look(r->listener->server, &r->route, NULL);
     const bool is_root = r->route.route == CAMBER_ROUTE_TILESET;
     char name[64] = "tileset.json";
     if (!view.ready)
@@ -247,7 +263,7 @@ static enum MHD_Result request_tile(request *r) {
 
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
-    const camber_content_view view = look(server, r->route.dark, NULL);
+    const camber_content_view view = look(server, &r->route, NULL);
     const bool is_tile = r->route.route == CAMBER_ROUTE_TILE;
     if (r->asked && !r->refused && r->tile_request.result == CAMBER_TILE_REQUEST_DONE)
         return send_tile(r, &view, r->tile_request.body);
@@ -280,7 +296,7 @@ static enum MHD_Result answer_page(request *r) {
 
 static enum MHD_Result answer_tilejson(request *r) {
     camber_body *bodies[2];
-    const camber_content_view view = look(r->listener->server, r->route.dark, bodies);
+    const camber_content_view view = look(r->listener->server, &r->route, bodies);
     reply a = {.status = 200, .media_type = "application/json", .cache_control = "no-cache"};
     const enum MHD_Result result = !view.ready  ? send_error(r, 503)
                                    : !bodies[0] ? send_error(r, 404)
@@ -298,10 +314,20 @@ static enum MHD_Result send_text(request *r, const char *text, size_t size_bytes
     return a.body ? send_answer(r, &a) : MHD_NO;
 }
 
+/* Whether a map has been read, or all of them. */
+static bool is_ready(camber_server *server, uint32_t map) {
+    bool ready = true;
+    pthread_mutex_lock(&server->mutex);
+    for (uint32_t i = 0; i < server->desc.map_count; i++)
+        ready = ready && (server->maps[i].view.ready || (map != CAMBER_ROUTE_NO_MAP && map != i));
+    pthread_mutex_unlock(&server->mutex);
+    return ready;
+}
+
 static enum MHD_Result answer_health(request *r) {
     static const char fine[] = "ok\n";
     camber_server *server = r->listener->server;
-    return look(server, false, NULL).ready && !server->stopping
+    return is_ready(server, r->route.map) && !server->stopping
                ? send_text(r, fine, sizeof fine - 1, "text/plain; charset=utf-8")
                : send_error(r, 503);
 }
@@ -309,7 +335,7 @@ static enum MHD_Result answer_health(request *r) {
 static enum MHD_Result answer_metrics(request *r) {
     camber_server *server = r->listener->server;
     const camber_metrics_now now = {.cache = camber_tile_cache_get_stats(server->cache),
-                                    .ready = look(server, false, NULL).ready,
+                                    .ready = is_ready(server, CAMBER_ROUTE_NO_MAP),
                                     .in_flight = server->in_flight,
                                     .uptime_s = 1e-3 * (camber_now_ms() - server->start_ms)};
     char *text = NULL;
@@ -347,6 +373,58 @@ static enum MHD_Result answer_events(request *r) {
     return queued;
 }
 
+static void write_escaped(FILE *file, const char *text) {
+    for (; *text; text++)
+        if (strchr("<>&\"'", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+}
+
+static void write_entry(FILE *file, const camber_served_map *map) {
+    fprintf(file, "<li><a href=\"%s/\">", map->name);
+    write_escaped(file, *map->title ? map->title : map->name);
+    fprintf(file, "</a> <code>%s</code>%s</li>\n", map->name, map->view.ready ? "" : " is being read");
+}
+
+/* The list of the maps. It repeats only names and titles, not the request. */
+static enum MHD_Result answer_index(request *r) {
+    camber_server *server = r->listener->server;
+    char *text = NULL;
+    size_t size_bytes = 0;
+    FILE *file = open_memstream(&text, &size_bytes);
+    if (!file)
+        return MHD_NO;
+    fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Maps</title>\n"
+          "<link rel=\"icon\" href=\"page/icon.svg\" type=\"image/svg+xml\">\n"
+          "<link rel=\"stylesheet\" href=\"page/page.css\">\n"
+          "</head>\n<body class=\"index\">\n<main>\n<h1>Maps</h1>\n<ul>\n",
+          file);
+    pthread_mutex_lock(&server->mutex);
+    for (uint32_t i = 0; i < server->desc.map_count; i++)
+        if (!server->maps[i].is_dark)
+            write_entry(file, server->maps + i);
+    pthread_mutex_unlock(&server->mutex);
+    fputs("</ul>\n</main>\n</body>\n</html>\n", file);
+    reply a = {.status = 200, .media_type = "text/html; charset=utf-8", .cache_control = "no-cache", .has_page = true};
+    a.body = fclose(file) == 0 ? camber_body_create(text, size_bytes) : NULL;
+    free(text);
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
+/* The page's paths are relative, so that the folder's name must end with a slash. */
+static enum MHD_Result answer_folder(request *r) {
+    static const char moved[] = "308 the map's page is below this path, with a slash after it\n";
+    reply a = {.status = 308,
+               .body = camber_body_create(moved, sizeof moved - 1),
+               .media_type = "text/plain; charset=utf-8",
+               .cache_control = "no-cache"};
+    snprintf(a.location, sizeof a.location, "%.*s/", (int)r->route.name_length, r->route.name);
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
 static enum MHD_Result answer(request *r) {
     if (r->listener->is_for_metrics != (r->route.route == CAMBER_ROUTE_METRICS))
         return send_error(r, 404);
@@ -360,6 +438,8 @@ static enum MHD_Result answer(request *r) {
     case CAMBER_ROUTE_HEALTH: return answer_health(r);
     case CAMBER_ROUTE_METRICS: return answer_metrics(r);
     case CAMBER_ROUTE_EVENTS: return answer_events(r);
+    case CAMBER_ROUTE_INDEX: return answer_index(r);
+    case CAMBER_ROUTE_FOLDER: return answer_folder(r);
     case CAMBER_ROUTE_NONE:
     case CAMBER_ROUTES: break;
     }
@@ -451,11 +531,14 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
     }
     camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
-    const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
+    const camber_server_desc *desc = &listener->server->desc;
+    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
     int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
     /* An archive and the metrics have no pictures, so a path of a picture gets a 404 instead of a 400. */
-    if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
+    if (status == 400 && (listener->is_for_metrics || look(listener->server, &r->route, NULL).is_archive))
         status = 404;
+    if (status == 400 && r->route.reason)
+        return send_refusal(r, r->route.reason);
     return status == 200 ? answer(r) : send_error(r, status);
 }
 

@@ -12,7 +12,7 @@ enum { FIRST_PREPARED_ZOOM = 10, LAST_PREPARED_ZOOM = 17 };
 
 struct camber_painter {
     camber_tile_cache *cache;
-    uint32_t side;
+    uint32_t map, side;
     pthread_mutex_t mutex; /* guards next and has_next */
     camber_map_source next;
     bool has_next;
@@ -59,11 +59,12 @@ static void take_next(camber_painter *painter) {
     painter->prepared_zoom = FIRST_PREPARED_ZOOM;
 }
 
-camber_painter *camber_painter_create(camber_tile_cache *cache, uint32_t side) {
+camber_painter *camber_painter_create(camber_tile_cache *cache, uint32_t map, uint32_t side) {
     camber_painter *made = calloc(1, sizeof *made);
     if (!made)
         return NULL;
     made->cache = cache;
+    made->map = map;
     made->side = side;
     pthread_mutex_init(&made->mutex, NULL);
     return made;
@@ -87,7 +88,7 @@ void camber_painter_put(camber_painter *painter, const camber_map_source *source
     pthread_mutex_unlock(&painter->mutex);
     /* Pictures that begin from now on belong to the new map. A picture that has already begun belongs to the previous
      * generation, and is not cached. */
-    camber_tile_cache_clear(painter->cache, source->input);
+    camber_tile_cache_clear(painter->cache, painter->map, source->input);
     if (unseen && before.close)
         before.close(before.owner);
 }
@@ -196,10 +197,10 @@ static camber_status draw_view(camber_painter *painter, const camber_route_reque
     return camber_renderer_render_into(painter->source.renderer, &frame, rendered->rgba, 0, NULL);
 }
 
-/* ---- Callbacks of the queue ---- */
+/* ---- What the queue asks for ---- */
 
-camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_rendered_picture *rendered) {
-    camber_painter *painter = user;
+camber_status camber_painter_draw(camber_painter *painter, const camber_route_request *request,
+                                  camber_rendered_picture *rendered) {
     take_next(painter);
     if (!painter->has_source)
         return CAMBER_ERROR_NOT_FOUND;
@@ -210,8 +211,7 @@ camber_status camber_painter_draw(void *user, const camber_route_request *reques
     return status;
 }
 
-bool camber_painter_prepare(void *user) {
-    camber_painter *painter = user;
+bool camber_painter_prepare(camber_painter *painter) {
     camber_tiles_engine *engine = NULL;
     camber_tiles_picture picture;
     take_next(painter);

@@ -98,6 +98,78 @@ def test_routes():
     server.stop()
 
 
+def write_archive(name, theme, seed):
+    """A PMTiles of pictures in one theme."""
+    write_map("archived.json", seed=seed)
+    subprocess.run([TOOL, "tiles", "archived.json", "-o", name, "-f", "-q", "--theme", theme, "--min-zoom", str(ZOOM - 2), "--max-zoom",
+                    str(ZOOM), "--tile-size", "256"], check=True, timeout=PATIENCE_S)
+
+
+def test_maps():
+    """Several maps under names, among them light and dark out of two archives; each is read again by itself."""
+    write_map("a.json", seed=1)
+    write_map("b.json", seed=2)
+    write_archive("light.pmtiles", "light", 3)
+    write_archive("dark.pmtiles", "dark", 3)
+    tile = f"{ZOOM}/{COLUMN}/{ROW}.png"
+    alone = {}
+    for name in ("a.json", "b.json", "light.pmtiles", "dark.pmtiles"):
+        server = Server(name)
+        alone[name] = server.get("/" + tile)[2]
+        server.stop()
+    server = Server("a=a.json", "x-1=light.pmtiles", "x-1/dark=dark.pmtiles", "b=b.json")
+    for name, file in (("a", "a.json"), ("b", "b.json"), ("x-1", "light.pmtiles"), ("x-1/dark", "dark.pmtiles")):
+        expect(server.get(f"/{name}/{tile}")[2] == alone[file], f"{name} is not as when it is alone")
+        about = json.loads(server.get(f"/{name}/tiles.json")[2])
+        expect(about["tiles"] == [f"{server.url}/{name}/{{z}}/{{x}}/{{y}}.png"], about)
+        theme = "dark" if name == "x-1/dark" else "light"
+        expect(about["camber"]["theme"] == theme, about)
+        page = server.get(f"/{name}/")
+        expect(page[0] == 200 and b'src="page/page.js"' in page[2], page[2])
+        expect(server.get(f"/{name}/page/page.js")[0] == 200 and server.get(f"/{name}/health")[0] == 200, name)
+        status, headers, _ = server.get(f"/{name}")
+        expect(status == 308 and headers["location"] == name.split("/")[-1] + "/", headers)
+    expect(server.get(f"/a/dark/{tile}")[0] == 200 and server.get(f"/x-1/dark/dark/{tile}")[0] == 404, "dark")
+    status, headers, body = server.get("/")
+    listed = re.findall(r'<li><a href="([^"]*)/">', body.decode())
+    expect(status == 200 and listed == ["a", "x-1", "b"] and "default-src 'none'" in headers["content-security-policy"], body)
+    expect(server.get("/page/page.css")[0] == 200 and server.get("/health")[0] == 200, "the list's own files")
+    for path in ("/" + tile, "/tiles.json", "/none/" + tile, "/aa/" + tile, "/a" + tile, "/metrics", "/a/metrics", "//a/" + tile):
+        expect(server.get(path)[0] == 404, path)
+
+    # Two are replaced: one by something else, and one by a broken file, which is named; the other maps stay as they were.
+    hits = server.metric("cache_tiles")
+    write_map("a.json", seed=9)
+    with open("light.pmtiles", "r+b") as file:
+        file.truncate(100)
+    server.process.send_signal(signal.SIGHUP)
+    wait_until(lambda: any("reloaded b=b.json" in line for line in server.errors), lambda: server.errors)
+    said = "".join(server.errors)
+    expect("reloaded a=a.json" in said and "still serving the previous map of x-1\n" in said and "light.pmtiles" in said, said)
+    expect(server.metric("cache_tiles") < hits, "tiles of the former map are kept")
+    expect(server.get("/a/" + tile)[2] not in alone.values(), "the former map")
+    expect(server.get("/b/" + tile)[2] == alone["b.json"] and server.get("/x-1/" + tile)[2] == alone["light.pmtiles"], "others")
+    server.stop()
+
+    # Light and dark of one map without a name.
+    write_archive("light.pmtiles", "light", 3)
+    server = Server("light.pmtiles", "dark=dark.pmtiles")
+    expect(server.get("/" + tile)[2] == alone["light.pmtiles"] and server.get("/dark/" + tile)[2] == alone["dark.pmtiles"], "themes")
+    themes = [json.loads(server.get(path + "tiles.json")[2])["camber"]["theme"] for path in ("/", "/dark/")]
+    expect(themes == ["light", "dark"] and server.get("/dark/")[0] == 200 and server.get("/")[0] == 200, themes)
+    server.stop()
+
+    for arguments, words in ((("a=a.json", "b.json"), "no name"), (("dark=a.json",), "no map"), (("a/dark=a.json",), "a=INPUT"),
+                             (("page=a.json",), "path of this name"), (("a=",), "no input"), (("a=-",), "standard input"),
+                             (("a=a.json", "--renderd", "x", "--cache-dir", "y"), "one map"),
+                             (("a=a.json", "--edit", "x"), "one map"), (("a=a.json", "--name", "x"), "own name")):
+        done = subprocess.run([TOOL, "serve", *arguments], capture_output=True, text=True, timeout=PATIENCE_S)
+        expect(done.returncode == 2 and words in done.stderr, f"{arguments}: {done.returncode} {done.stderr}")
+    done = subprocess.run([TOOL, "serve", "a=a.json", "b=none.json", "--listen", "127.0.0.1:0"], capture_output=True, text=True,
+                          timeout=PATIENCE_S)
+    expect(done.returncode == 66 and "none.json" in done.stderr and "http://" not in done.stderr, done.stderr)
+
+
 def test_start():
     """Before the input is read there is the page alone; what must be drawn is 503."""
     for count in (20000, 80000, 320000):  # until it takes longer to read than to ask

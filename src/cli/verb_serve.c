@@ -523,6 +523,8 @@ static int listen_there(camber_session *session, const wishes *w, camber_server 
                                      .cache_dir = options->cache_dir,
                                      .maps = w->names,
                                      .map_count = (uint32_t)w->map_count,
+                                     .fonts = options->fonts,
+                                     .font_count = options->font_count,
                                      .edits = options->edit != NULL,
                                      .logs_requests = options->verbose,
                                      .log_request = tell_request,

@@ -8,6 +8,7 @@
 #include "serve/answer.h"
 
 #include "serve/gzip.h"
+#include "serve/overlay.h"
 #include "serve/page.h"
 
 #include <poll.h>
@@ -25,6 +26,9 @@ typedef struct request {
     char method[8];
     camber_route_request route;
     camber_tile_request tile_request;
+    camber_overlay *overlay; /* drawn over a picture. NULL: none */
+    char *posted;            /* posted_bytes of a body. NULL: none */
+    size_t posted_bytes;
     bool begun, asked, refused;
     int status; /* the status that was sent; 0: none yet */
     size_t sent_bytes;
@@ -261,6 +265,70 @@ static enum MHD_Result request_tile(request *r) {
     return MHD_YES;
 }
 
+/* ---- Overlays of pictures ---- */
+
+/* The parameters of a query, as libmicrohttpd decodes them. */
+typedef struct query {
+    camber_overlay_param *params;
+    size_t count, capacity;
+    bool is_broken; /* a parameter contains a zero byte, or there is no memory */
+} query;
+
+static enum MHD_Result add_param(void *user, enum MHD_ValueKind kind, const char *name, size_t name_size,
+                                 const char *value, size_t value_size) {
+    query *q = user;
+    (void)kind;
+    const char *text = value ? value : "";
+    if (q->count == q->capacity) {
+        const size_t capacity = q->capacity ? 2 * q->capacity : 16;
+        camber_overlay_param *params = realloc(q->params, capacity * sizeof *params);
+        if (!params) {
+            q->is_broken = true;
+            return MHD_NO;
+        }
+        q->params = params;
+        q->capacity = capacity;
+    }
+    q->is_broken = q->is_broken || strlen(name) != name_size || (value && strlen(value) != value_size);
+    q->params[q->count++] = (camber_overlay_param){name, text};
+    return MHD_YES;
+}
+
+/* Makes what the request draws over its picture, and finds the picture's view. Returns 200 or an error's status. */
+static int take_overlay(request *r, char reason[CAMBER_OVERLAY_REASON_SIZE]) {
+    const camber_server_desc *server = &r->listener->server->desc;
+    query q = {0};
+    int status = 400;
+    (void)MHD_get_connection_values_n(r->connection, MHD_GET_ARGUMENT_KIND, add_param, &q);
+    const camber_overlay_desc desc = {.params = q.params,
+                                      .param_count = q.count,
+                                      .body = r->posted,
+                                      .body_size = r->posted_bytes,
+                                      .fonts = server->fonts,
+                                      .font_count = server->font_count};
+    if (q.is_broken)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the query has a zero byte");
+    else if (r->posted_bytes > CAMBER_OVERLAY_MOST_BODY_BYTES)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the body has more than %d bytes", CAMBER_OVERLAY_MOST_BODY_BYTES);
+    else if (strcmp(r->method, "POST") == 0 && !r->posted)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "POST needs a body with GeoJSON");
+    else
+        status = camber_overlay_create(&desc, &r->route, &r->overlay, reason);
+    free(q.params);
+    r->route.overlay = r->overlay;
+    return status;
+}
+
+/* Keeps a part of the body of a request, up to one byte more than it may have. */
+static void take_body(request *r, const char *bytes, size_t size) {
+    const size_t most = CAMBER_OVERLAY_MOST_BODY_BYTES + 1;
+    if (!r->posted && !(r->posted = malloc(most)))
+        return;
+    const size_t taken = size < most - r->posted_bytes ? size : most - r->posted_bytes;
+    memcpy(r->posted + r->posted_bytes, bytes, taken);
+    r->posted_bytes += taken;
+}
+
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
     const camber_content_view view = look(server, &r->route, NULL);
@@ -276,6 +344,10 @@ static enum MHD_Result answer_drawn(request *r) {
     if (r->route.type > CAMBER_ROUTE_WEBP || (r->route.dark && !view.has_dark) ||
         (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
         return send_error(r, 404);
+    char reason[CAMBER_OVERLAY_REASON_SIZE] = "";
+    const int status = is_tile ? 200 : take_overlay(r, reason);
+    if (status != 200)
+        return status == 400 ? send_refusal(r, reason) : send_error(r, status);
     camber_body *body = is_tile ? camber_tile_cache_get(server->cache, camber_draw_queue_key(&r->route)) : NULL;
     return body ? send_tile(r, &view, body) : request_tile(r);
 }
@@ -508,13 +580,25 @@ static bool has_body(const request *r) {
     return (length && strcmp(length, "0") != 0) || header_of(r, MHD_HTTP_HEADER_TRANSFER_ENCODING);
 }
 
+static int parse_route(const request *r, const char *method, camber_route_request *route) {
+    const camber_server_desc *desc = &r->listener->server->desc;
+    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
+    return camber_route_parse(&limits, method, r->client->path, route);
+}
+
+/* Whether the request's body is read: that of a picture's GeoJSON. */
+static bool takes_body(const request *r, const char *method) {
+    camber_route_request route;
+    return strcmp(method, "POST") == 0 && !r->listener->is_for_metrics && parse_route(r, method, &route) == 200;
+}
+
 enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connection, const char *url,
                                       const char *method, const char *version, const char *upload, size_t *upload_size,
                                       void **state) {
     camber_listener *listener = user;
     request *r = *state ? *state : take_request(listener, connection);
+    const size_t sent_bytes = *upload_size;
     (void)url;
-    (void)upload;
     *upload_size = 0;
     if (!r)
         return MHD_NO;
@@ -523,17 +607,19 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
         return MHD_YES;
     if (r->asked)
         return answer_drawn(r);
-    /* An answer at the first call closes the connection. That is right if the request has a body, which nobody
-     * reads. */
-    if (!r->begun && !has_body(r)) {
+    /* An answer at the first call closes the connection. That is right if the request has a body that nobody reads. */
+    const bool takes = has_body(r) && takes_body(r, method);
+    if (!r->begun && (takes || !has_body(r))) {
         r->begun = true;
+        return MHD_YES;
+    }
+    if (takes && sent_bytes) {
+        take_body(r, upload, sent_bytes);
         return MHD_YES;
     }
     camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
-    const camber_server_desc *desc = &listener->server->desc;
-    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
-    int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
+    int status = is_whole(r, version) ? parse_route(r, method, &r->route) : 404;
     /* An archive and the metrics have no pictures, so a path of a picture gets a 404 instead of a 400. */
     if (status == 400 && (listener->is_for_metrics || look(listener->server, &r->route, NULL).is_archive))
         status = 404;
@@ -588,6 +674,8 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     if (server->desc.log_request && server->desc.logs_requests)
         log_request(r);
     camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
+    camber_overlay_destroy(r->overlay);
+    free(r->posted);
     if (r->asked && !r->refused && r->status == 0) /* the tile arrived, but is not sent */
         camber_body_release(r->tile_request.body);
     r->client->request = NULL;

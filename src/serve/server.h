@@ -31,6 +31,8 @@ typedef struct camber_server_desc {
      * is another one's and then /dark is its dark theme, and so is "dark" beside "". NULL: one map without a name. */
     const char *const *maps;
     uint32_t map_count;
+    const char *const *fonts; /* font_count folders with fonts for texts over pictures */
+    size_t font_count;
     bool edits;         /* the style is being edited, so browsers must revalidate every answer */
     bool logs_requests; /* log_request is called for each request */
     void (*log_request)(void *user, const char *line); /* line: JSON without a line break. Several threads call it */

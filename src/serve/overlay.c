@@ -578,7 +578,7 @@ static bool walk_feature(maker *m, const json_t *feature) {
 
 /* A property as a number, or a value where it is not one. */
 static json_t *number_of(const char *name, double otherwise) {
-    return json_pack("[s, [s, s], f]", "to-number", "get", name, otherwise);
+    return json_pack("[s, [s, [s, s], f], f]", "to-number", "coalesce", "get", name, otherwise, otherwise);
 }
 
 static json_t *color_of(const char *name, piece otherwise) {

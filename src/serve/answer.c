@@ -370,6 +370,7 @@ static enum MHD_Result answer_tilejson(request *r) {
     camber_body *bodies[2];
     const camber_content_view view = look(r->listener->server, &r->route, bodies);
     reply a = {.status = 200, .media_type = "application/json", .cache_control = "no-cache"};
+    memcpy(a.last_modified, view.last_modified, sizeof a.last_modified);
     const enum MHD_Result result = !view.ready  ? send_error(r, 503)
                                    : !bodies[0] ? send_error(r, 404)
                                                 : send_variant(r, &a, bodies);

@@ -11,7 +11,7 @@
 enum { BODY_BYTES = 1000, THREADS = 4, ROUNDS = 20000, PLACES = 500 };
 
 static camber_tile_key key(uint64_t place) {
-    return (camber_tile_key){place, 1};
+    return (camber_tile_key){place, 1, 0};
 }
 
 static camber_body *make_body(unsigned char value) {
@@ -102,6 +102,26 @@ static void begins_anew(void **state) {
     camber_tile_cache_put(cache, key(9), late, camber_tile_cache_get_generation(cache, 0));
     assert_true(has(cache, 9));
     camber_body_release(late);
+    camber_tile_cache_destroy(cache);
+}
+
+/* Maps share the memory, and nothing else. */
+static void keeps_maps_apart(void **state) {
+    camber_tile_cache *cache = camber_tile_cache_create(1 << 20, 2, NULL);
+    camber_body *body = make_body(5);
+    camber_tile_key other = key(5);
+    (void)state;
+    other.map = 1;
+    put(cache, 5);
+    assert_null(camber_tile_cache_get(cache, other));
+    camber_tile_cache_put(cache, other, body, camber_tile_cache_get_generation(cache, 1));
+    camber_tile_cache_clear(cache, 0, 0);
+    assert_false(has(cache, 5));
+    camber_body *found = camber_tile_cache_get(cache, other);
+    assert_ptr_equal(found, body);
+    assert_int_equal(camber_tile_cache_get_stats(cache).tiles, 1);
+    camber_body_release(found);
+    camber_body_release(body);
     camber_tile_cache_destroy(cache);
 }
 
@@ -208,6 +228,7 @@ int main(void) {
         cmocka_unit_test(keeps_its_bound),
         cmocka_unit_test(grows),
         cmocka_unit_test(begins_anew),
+        cmocka_unit_test(keeps_maps_apart),
         cmocka_unit_test(keeps_a_body_that_is_sent),
         cmocka_unit_test(tags_differ_where_bytes_do),
         cmocka_unit_test(packs_and_unpacks),

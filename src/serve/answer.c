@@ -17,7 +17,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LARGEST_UNPACKED_BYTES = 64 << 20 };
+enum { LARGEST_UNPACKED_BYTES = 64 << 20, MOST_POSTS = 8 };
 
 typedef struct request {
     camber_listener *listener;
@@ -29,6 +29,7 @@ typedef struct request {
     camber_overlay *overlay; /* drawn over a picture. NULL: none */
     char *posted;            /* posted_bytes of a body. NULL: none */
     size_t posted_bytes;
+    bool is_post, is_crowded; /* it is counted among the server's posts; there are too many of them */
     bool begun, asked, refused;
     int status; /* the status that was sent; 0: none yet */
     size_t sent_bytes;
@@ -306,7 +307,9 @@ static int take_overlay(request *r, char reason[CAMBER_OVERLAY_REASON_SIZE]) {
                                       .body_size = r->posted_bytes,
                                       .fonts = server->fonts,
                                       .font_count = server->font_count};
-    if (q.is_broken)
+    if (r->is_crowded)
+        status = 503;
+    else if (q.is_broken)
         snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the query has a zero byte");
     else if (r->posted_bytes > CAMBER_OVERLAY_MOST_BODY_BYTES)
         snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the body has more than %d bytes", CAMBER_OVERLAY_MOST_BODY_BYTES);
@@ -319,10 +322,15 @@ static int take_overlay(request *r, char reason[CAMBER_OVERLAY_REASON_SIZE]) {
     return status;
 }
 
-/* Keeps a part of the body of a request, up to one byte more than it may have. */
+/* Keeps a part of the body of a request, up to one byte more than it may have. GeoJSON takes many times its size until
+ * it is drawn, so few requests may have a body at once. */
 static void take_body(request *r, const char *bytes, size_t size) {
     const size_t most = CAMBER_OVERLAY_MOST_BODY_BYTES + 1;
-    if (!r->posted && !(r->posted = malloc(most)))
+    if (!r->is_post) {
+        r->is_post = true;
+        r->is_crowded = atomic_fetch_add(&r->listener->server->posts, 1) >= MOST_POSTS;
+    }
+    if (r->is_crowded || (!r->posted && !(r->posted = malloc(most))))
         return;
     const size_t taken = size < most - r->posted_bytes ? size : most - r->posted_bytes;
     memcpy(r->posted + r->posted_bytes, bytes, taken);
@@ -677,6 +685,8 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
     camber_overlay_destroy(r->overlay);
     free(r->posted);
+    if (r->is_post)
+        server->posts--;
     if (r->asked && !r->refused && r->status == 0) /* the tile arrived, but is not sent */
         camber_body_release(r->tile_request.body);
     r->client->request = NULL;

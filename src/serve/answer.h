@@ -65,6 +65,7 @@ struct camber_server {
     camber_metrics metrics;
     double start_ms;
     atomic_bool stopping;
+    atomic_int posts;          /* requests that have a body */
     _Atomic int64_t in_flight; /* requests that have been received and not yet answered */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
     camber_body **page_bodies; /* two per file: plain, then compressed or NULL */

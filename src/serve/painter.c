@@ -242,7 +242,7 @@ static camber_status draw_view(camber_painter *painter, const camber_route_reque
                             : camber_renderer_render_into(painter->source.renderer, &frame, rendered->rgba, 0, NULL);
 }
 
-/* ---- What the queue asks for ---- */
+/* ---- Functions for the queue ---- */
 
 camber_status camber_painter_draw(camber_painter *painter, const camber_route_request *request,
                                   camber_rendered_picture *rendered) {

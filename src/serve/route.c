@@ -194,7 +194,7 @@ static const char *take_picture(cursor *c, camber_route_request *r) {
     return NULL;
 }
 
-/* What begins with /static/ is a picture, or an error that says what is wrong with it. */
+/* Any path that begins with /static/ is a picture, or an error that says what is wrong with it. */
 static bool take_static(cursor *c, camber_route_request *r) {
     const char *reason = take_picture(c, r);
     r->route = CAMBER_ROUTE_STATIC;

@@ -40,7 +40,7 @@ typedef enum camber_route {
 enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
 enum { CAMBER_ROUTE_NO_MAP = UINT32_MAX };
 
-/* What a picture shows. */
+/* How a path says which part of the map its picture shows. */
 typedef enum camber_route_view {
     CAMBER_ROUTE_CENTER = 0, /* longitude, latitude and map_zoom */
     CAMBER_ROUTE_BOUNDS,     /* bounds */

@@ -204,7 +204,7 @@ def test_overlays():
 
 
 def test_overlay_errors():
-    """What is wrong with a picture is said, with its number, and the request's own text is not repeated."""
+    """Answers say what is wrong with a picture, with its number, and do not repeat the request's own text."""
     write_map("map.json")
     server = Server("map.json", "--max-size", "600")
     auto = "/static/auto/300x200.png"

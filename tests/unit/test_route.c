@@ -167,7 +167,7 @@ static void knows_no_other_path(void **state) {
     assert_int_equal(parse("/static/0.123456789012345,0,0/1x1.png", &request), 200);
 }
 
-/* What begins as a picture is answered with what is wrong with it. */
+/* A path that begins as a picture is answered with what is wrong with it. */
 static void tells_what_is_wrong_with_pictures(void **state) {
     static const char *const paths[] = {"/static/0,0,0/0x1.png",
                                         "/static/0,0,0/1x0.png",

@@ -1,5 +1,5 @@
-/* What a request draws over its picture: paths, markers and texts, which its query names in tileserver-gl's grammar,
- * and GeoJSON, which its body has.
+/* Overlays: a request draws them over its picture. Paths, markers and texts are in its query, in tileserver-gl's
+ * grammar, and GeoJSON is its body.
  *
  *     path=[fill:C|stroke:C|width:PX|border:C|borderwidth:PX|]LON,LAT|LON,LAT...     or enc:POLYLINE in place of points
  *     marker=LON,LAT[|ICON|scale:N|offset:X,Y|color:C|label:TEXT]                    ICON: pin or dot

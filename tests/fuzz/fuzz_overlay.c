@@ -1,5 +1,4 @@
-/* What a request draws over a picture: a line for each parameter of the query, NAME=VALUE; after an empty line, the
- * body. */
+/* Overlays of pictures: a line for each parameter of the query, NAME=VALUE; after an empty line, the body. */
 #include "fuzz.h"
 
 #include "serve/overlay.h"

@@ -141,7 +141,7 @@ def test_overlays():
     box = ask(("path", BOX), ("fill", "red"), ("stroke", "blue"), ("width", "10"))
     expect(is_color(box, 200, 200, RED) and is_color(box, 18, 200, BLUE) and is_color(box, 382, 200, BLUE), "a filled path")
     expect(box[200][:40] == plain[200][:40] and is_color(box, 24, 200, RED), "its width")
-    # What the path itself says counts more.
+    # The path itself is asked first.
     own = ask(("path", f"fill:green|stroke:none|{BOX}"), ("fill", "red"), ("stroke", "blue"), ("width", "10"))
     expect(is_color(own, 200, 200, GREEN) and is_color(own, 20, 200, GREEN) and own[200][:4 * 17] == plain[200][:4 * 17], "own look")
     expect(ask(("path", "|".join(",".join(reversed(p.split(","))) for p in BOX.split("|"))), ("latlng", "1"), ("fill", "red"),

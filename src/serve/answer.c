@@ -465,7 +465,10 @@ static void write_escaped(FILE *file, const char *text) {
 static void write_entry(FILE *file, const camber_served_map *map) {
     fprintf(file, "<li><a href=\"%s/\">", map->name);
     write_escaped(file, *map->title ? map->title : map->name);
-    fprintf(file, "</a> <code>%s</code>%s</li>\n", map->name, map->view.ready ? "" : " is being read");
+    fputs("</a>", file);
+    if (*map->title && strcmp(map->title, map->name) != 0)
+        fprintf(file, " <code>%s</code>", map->name);
+    fputs(map->view.ready ? "</li>\n" : " is being read</li>\n", file);
 }
 
 /* The list of the maps. It repeats only names and titles, not the request. */

@@ -260,6 +260,11 @@ def test_failures():
     os.killpg(holder.pid, signal.SIGTERM)
     holder.wait()
 
+    # A pair of which only one can be replaced: neither is.
+    os.makedirs("maps/dark.pmtiles/in the way")
+    fails("a pair", "dark.pmtiles failed", CAMBER_DARK=os.path.abspath("maps/dark.pmtiles"), CAMBER_LEAST="0")
+    shutil.rmtree("maps/dark.pmtiles")
+
     # The server does not take what was verified: the previous archive is put back.
     status, said = job.run(CAMBER_RELOAD="true", CAMBER_WAIT="1")
     expect(status == 65 and "does not take" in said and open("maps/city.pmtiles", "rb").read() == archive, said)

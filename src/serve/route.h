@@ -38,7 +38,7 @@ typedef enum camber_route {
 } camber_route;
 
 enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
-enum { CAMBER_ROUTE_NO_MAP = UINT32_MAX };
+#define CAMBER_ROUTE_NO_MAP UINT32_MAX
 
 /* How a path says which part of the map its picture shows. */
 typedef enum camber_route_view {

@@ -51,7 +51,7 @@ const camber_verb_spec camber_verb_specs[] = {
     {"style", CAMBER_VERB_STYLE, "check NAME|FILE | eval FILE", "check a style; evaluate an expression"},
     {"tiles", CAMBER_VERB_TILES, "INPUT... -o OUT | show FILE | verify FILE | merge PART... -o OUT",
      "draw tiles into an archive; show, verify and merge archives"},
-    {"serve", CAMBER_VERB_SERVE, "INPUT... | --style FILE | ARCHIVE",
+    {"serve", CAMBER_VERB_SERVE, "[NAME=]INPUT... | --style FILE | [NAME=]ARCHIVE...",
      "serve tiles and pictures over HTTP, drawn on request"},
 #else
     {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "compare the methods fan, kite and strip"},

@@ -58,4 +58,24 @@ void camber_tiles_files_release(camber_tiles_files *files) {
     camber_guard_unlock(guard);
 }
 
+void camber_tiles_say_done(camber_session *session, const char *path, const char *what, uint64_t tiles,
+                           uint64_t size_bytes) {
+    camber_tiles_info *info = NULL;
+    camber_report *report = session->report;
+    struct stat about;
+    char zooms[48] = "";
+    if (report->quiet || report->json)
+        return;
+    if (stat(path, &about) == 0 && S_ISREG(about.st_mode)) {
+        size_bytes = (uint64_t)about.st_size;
+        if (camber_tiles_show(session->context, path, &info) == CAMBER_OK) {
+            tiles = info->tiles;
+            snprintf(zooms, sizeof zooms, ", zooms %d to %d", info->min_zoom, info->max_zoom);
+        }
+        camber_tiles_info_destroy(info);
+    }
+    camber_report_done(report, path, size_bytes, camber_session_elapsed_ms(session), "%s%s tile%s%s", what,
+                       camber_figure_count(tiles).text, camber_plural((size_t)tiles), zooms);
+}
+
 #endif

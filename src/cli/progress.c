@@ -105,7 +105,8 @@ static size_t count_columns(void) {
 void camber_progress_show(camber_progress_bar *bar, const camber_progress_info *progress) {
     char line[LINE_SIZE];
     const double now_ms = camber_now_ms();
-    if (bar->drawn && now_ms - bar->drawn_ms < SHOW_EVERY_MS)
+    const bool same = strncmp(bar->stage, progress->stage, sizeof bar->stage - 1) == 0;
+    if (bar->drawn && same && now_ms - bar->drawn_ms < SHOW_EVERY_MS)
         return;
     camber_progress_write(bar, progress, now_ms, count_columns(), line, sizeof line);
     bar->drawn = true;

@@ -30,7 +30,7 @@ typedef struct camber_progress_bar {
 void camber_progress_write(camber_progress_bar *bar, const camber_progress_info *progress, double now_ms,
                            size_t columns, char *line, size_t size);
 
-/* Draws the line on standard error, at most 20 times a second. */
+/* Draws the line on standard error, at most 20 times a second for each stage. */
 void camber_progress_show(camber_progress_bar *bar, const camber_progress_info *progress);
 /* Erases the line if it is drawn. */
 void camber_progress_erase(camber_progress_bar *bar);

@@ -77,12 +77,11 @@ static int show(camber_session *session, const char *path) {
         return camber_report_status(session->report, status);
     const int exit_status =
         session->options->json ? show_json(session->report, info) : show_text(session->report, path, info);
-    if (exit_status == CAMBER_EXIT_DONE) {
-        uint64_t size_bytes = 0;
-        for (size_t i = 0; i < info->zoom_count; i++)
-            size_bytes += info->zooms[i].size_bytes;
+    uint64_t size_bytes = 0;
+    for (size_t i = 0; i < info->zoom_count; i++)
+        size_bytes += info->zooms[i].size_bytes;
+    if (exit_status == CAMBER_EXIT_DONE)
         camber_tiles_say_done(session, path, "", info->tiles, size_bytes);
-    }
     camber_tiles_info_destroy(info);
     return exit_status;
 }
@@ -128,22 +127,11 @@ static int verify(camber_session *session, const char *path) {
 
 /* ---- merge ---- */
 
-/* The tiles of a folder are counted by walking it. */
 static void say_merged(camber_session *session) {
-    const camber_options *options = session->options;
-    const size_t parts = options->input_count - 1;
+    const size_t parts = session->options->input_count - 1;
     char what[96];
-    camber_tiles_info *info = NULL;
-    uint64_t tiles = 0, size_bytes = 0;
     snprintf(what, sizeof what, "%s part%s with ", camber_figure_count(parts).text, camber_plural(parts));
-    if (!session->report->json && !session->report->quiet &&
-        camber_tiles_show(session->context, options->output, &info) == CAMBER_OK) {
-        tiles = info->tiles;
-        for (size_t i = 0; i < info->zoom_count; i++)
-            size_bytes += info->zooms[i].size_bytes;
-    }
-    camber_tiles_info_destroy(info);
-    camber_tiles_say_done(session, options->output, what, tiles, size_bytes);
+    camber_tiles_say_done(session, session->options->output, what, 0, 0);
 }
 
 static int merge(camber_session *session) {

@@ -457,8 +457,11 @@ static void print_text(const job *j) {
         char size[96] = "";
         if (!options->schedule) /* a dry run for a schedule draws no samples */
             snprintf(size, sizeof size, ", about %s", camber_figure_bytes(round_bytes(stats->bytes)).text);
-        camber_report_done(report, j->output, 0, j->total_ms, "would have %s tile%s%s; dry run",
-                           camber_figure_count(stats->tiles).text, camber_plural((size_t)stats->tiles), size);
+        camber_report_done(report, j->output, 0, j->total_ms,
+                           "would have at most %s tile%s in %s metatile%s, %s points%s; dry run",
+                           camber_figure_count(stats->tiles).text, camber_plural((size_t)stats->tiles),
+                           camber_figure_count(stats->units).text, camber_plural((size_t)stats->units),
+                           camber_figure_count(stats->points).text, size);
         return;
     }
     if (options->renewed || stats->resumed)

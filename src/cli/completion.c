@@ -1,5 +1,5 @@
-/* Prints the completion scripts for bash, zsh and fish from the table of options, so that they offer exactly what the parser
- * accepts.
+/* Prints the completion scripts for bash, zsh and fish from the table of options, so that they offer exactly what the
+ * parser accepts.
  *
  * The script for bash consists of three tables and a function. The tables are shell functions: the options of a verb,
  * the values of an option, and the operands of a verb. The function determines what kind of word is at the cursor, and

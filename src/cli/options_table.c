@@ -74,11 +74,20 @@ const camber_verb_spec camber_verb_specs[] = {
 };
 
 const camber_option_group camber_option_groups[] = {
-    {"output", "What is written"},     {"size", "What is shown"},      {"paper", "Paper"},
-    {"attribution", "How it looks"},   {"layer", "What is read"},      {"dump", "What is measured"},
-    {"method", "How lines are drawn"}, {"device", "Device and memory"}, {"allow-remote", "What files may reach"},
-    {"min-zoom", "Tiles"},             {"listen", "Server"},           {"warm", "Kernels"},
-    {"junit", "Checks"},               {"json", "Messages"},
+    {"output", "What is written"},
+    {"size", "What is shown"},
+    {"paper", "Paper"},
+    {"attribution", "How it looks"},
+    {"layer", "What is read"},
+    {"dump", "What is measured"},
+    {"method", "How lines are drawn"},
+    {"device", "Device and memory"},
+    {"allow-remote", "What files may reach"},
+    {"min-zoom", "Tiles"},
+    {"listen", "Server"},
+    {"warm", "Kernels"},
+    {"junit", "Checks"},
+    {"json", "Messages"},
 };
 
 #define FIELD(member) offsetof(camber_options, member)

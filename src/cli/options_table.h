@@ -83,9 +83,8 @@ static inline bool camber_option_repeats(const camber_option_spec *spec) {
 /* Whether giving the option twice is refused, because it says what is read, shown or written, and one of two would be
  * ignored. Of two settings the last one counts, so that a script can set some and let its caller override them. */
 static inline bool camber_option_once(const camber_option_spec *spec) {
-    return spec->kind == CAMBER_OPTION_FILE || spec->kind == CAMBER_OPTION_FOLDER ||
-           spec->kind == CAMBER_OPTION_BBOX || spec->kind == CAMBER_OPTION_CENTER ||
-           spec->offset == offsetof(camber_options, layer);
+    return spec->kind == CAMBER_OPTION_FILE || spec->kind == CAMBER_OPTION_FOLDER || spec->kind == CAMBER_OPTION_BBOX ||
+           spec->kind == CAMBER_OPTION_CENTER || spec->offset == offsetof(camber_options, layer);
 }
 /* Returns an option's help text for a verb, or for the tool (CAMBER_VERB_NONE). "": the verb's help does not list
  * it. */

@@ -1,5 +1,6 @@
 /* Prints each error and warning as one line on standard error, whatever characters a file's name contains; a progress
- * bar (progress.c) that is erased first; and JSON on standard output. Also turns a status of the library into an exit status. */
+ * bar (progress.c) that is erased first; and JSON on standard output. Also turns a status of the library into an exit
+ * status. */
 #include "cli/report.h"
 
 #include "base/whole_file.h"

@@ -12,8 +12,8 @@ size_t camber_character_size(const char *character);
 /* ---- TAP: results_tap.c ---- */
 
 typedef struct camber_tap {
-    bool each;     /* one line per check; otherwise one line per group */
-    size_t groups; /* printed so far */
+    bool each;             /* one line per check; otherwise one line per group */
+    size_t groups;         /* printed so far */
     camber_report *report; /* its progress bar may be on the terminal that the lines go to */
 } camber_tap;
 

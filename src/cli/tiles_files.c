@@ -68,8 +68,8 @@ static bool look_into(const char *path, summary *found) {
     const camber_context_desc desc = {.cache_dir = ""};
     camber_context *context = NULL;
     camber_tiles_info *info = NULL;
-    const bool shown = camber_context_create(&desc, &context) == CAMBER_OK &&
-                       camber_tiles_show(context, path, &info) == CAMBER_OK;
+    const bool shown =
+        camber_context_create(&desc, &context) == CAMBER_OK && camber_tiles_show(context, path, &info) == CAMBER_OK;
     if (shown)
         *found = (summary){info->tiles, 0, info->min_zoom, info->max_zoom};
     for (size_t i = 0; shown && i < info->zoom_count; i++)

@@ -138,8 +138,7 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
     char drawn[64] = "drawn by OpenCL kernels";
     if (camber_renderer_get_rasterizer(j->session->renderer) == CAMBER_RASTERIZER_GL)
         snprintf(drawn, sizeof drawn, "%s draw call%s", camber_figure_count(calls).text, camber_plural(calls));
-    camber_report_say(j->session->report,
-                      "%s feature%s, %s polyline%s, %s point%s, %s label%s, %s triangle%s (%s), %s",
+    camber_report_say(j->session->report, "%s feature%s, %s polyline%s, %s point%s, %s label%s, %s triangle%s (%s), %s",
                       camber_figure_count(scene->features).text, camber_plural(scene->features),
                       camber_figure_count(scene->polylines).text, camber_plural(scene->polylines),
                       camber_figure_count(scene->points).text, camber_plural(scene->points),
@@ -167,10 +166,9 @@ static void print_rings(const job *j) {
     size_t length = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i].count > 0 && (all[i].lost || j->session->report->verbose))
-            length +=
-                (size_t)snprintf(text + length, sizeof text - length, "%s%s %s%s %s", length > 0 ? ", " : "",
-                                 camber_figure_count(all[i].count).text, all[i].noun, camber_plural(all[i].count),
-                                 all[i].what);
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s%s %s%s %s", length > 0 ? ", " : "",
+                                       camber_figure_count(all[i].count).text, all[i].noun, camber_plural(all[i].count),
+                                       all[i].what);
     if (length > 0)
         camber_report_say(j->session->report, "areas: %s", text);
 }

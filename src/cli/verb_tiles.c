@@ -114,11 +114,11 @@ static int verify(camber_session *session, const char *path) {
         camber_report_say(report, "%s: %s: %s", path, found->findings[i].error ? "error" : "warning",
                           found->findings[i].message);
     if (exit_status == CAMBER_EXIT_DONE && found->count)
-        exit_status =
-            camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %s problem%s found%s; rebuild the archive%s", path,
-                               camber_figure_count(found->count + found->left_out).text, camber_plural(found->count + found->left_out),
-                               found->left_out ? ", the first of each kind listed" : "",
-                               broken ? "" : ", or rewrite it with camber tiles merge");
+        exit_status = camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %s problem%s found%s; rebuild the archive%s",
+                                         path, camber_figure_count(found->count + found->left_out).text,
+                                         camber_plural(found->count + found->left_out),
+                                         found->left_out ? ", the first of each kind listed" : "",
+                                         broken ? "" : ", or rewrite it with camber tiles merge");
     if (exit_status == CAMBER_EXIT_DONE)
         camber_tiles_say_done(session, path, "no problem found in ", found->tiles, found->size_bytes);
     camber_tiles_findings_destroy(found);

@@ -307,11 +307,10 @@ static void show_progress(reader *self, double fraction, uint64_t expected) {
     if (now - self->shown_ms < PROGRESS_MS)
         return;
     self->shown_ms = now;
-    camber_progress_tell(self->context, &(camber_progress_info){.stage = "reading",
-                                                                .fraction = fraction,
-                                                                .unit = "features",
-                                                                .done = self->read,
-                                                                .total = expected});
+    camber_progress_tell(
+        self->context,
+        &(camber_progress_info){
+            .stage = "reading", .fraction = fraction, .unit = "features", .done = self->read, .total = expected});
 }
 
 /* Reports progress while OpenStreetMap's nodes are read, which are not features. */

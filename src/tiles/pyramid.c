@@ -38,7 +38,7 @@ typedef struct pyramid {
     char fingerprint[CAMBER_FINGERPRINT_SIZE];
     double done_cost;
     uint64_t done_tiles, wanted_tiles; /* of the schedule's tasks */
-    double weight; /* of the next picture: see camber_encode_job */
+    double weight;                     /* of the next picture: see camber_encode_job */
     /* A tile that shows only the background, for tiles that are kept although they are empty. */
     uint8_t *blank;
     size_t blank_bytes, blank_capacity;

@@ -56,9 +56,9 @@ def on_terminal(*arguments, columns=120, both=False, status=0, **variables):
 
 def shown(said):
     """The lines that a person has before them in the end, and all that were there for a while."""
-    lines = [re.sub(r"\x1b\[\d*m", "", part) for part in said.replace(ERASE, "\n" + ERASE).split("\n")]
-    whiles = [line[len(ERASE):] for line in lines if line.startswith(ERASE) and line != ERASE]
-    kept = re.sub(r"\x1b\[\d*m", "", re.sub(r"[^\n]*\r\x1b\[K", "", said))
+    said = re.sub(r"\x1b\[\d*m", "", said)
+    whiles = [part for part in said.split(ERASE)[1:] if part and "\n" not in part]
+    kept = re.sub(r"[^\n]*\r\x1b\[K", "", said)
     return kept.split("\n")[:-1], whiles
 
 

@@ -26,10 +26,12 @@ static void test_line(void **state) {
                         "drawing tiles   [                              ]   0 %  0 of 3,600 tiles");
     /* too early for a rate */
     assert_null(strstr(line_of(&bar, drawing(10), 5.5e3, 120), "left"));
-    assert_string_equal(line_of(&bar, drawing(1800), 14e3, 120),
-                        "drawing tiles   [###############               ]  50 %  1,800 of 3,600 tiles, 200/s, 0:09 left");
-    assert_string_equal(line_of(&bar, drawing(3600), 23e3, 120),
-                        "drawing tiles   [##############################] 100 %  3,600 of 3,600 tiles, 200/s, 0:00 left");
+    assert_string_equal(
+        line_of(&bar, drawing(1800), 14e3, 120),
+        "drawing tiles   [###############               ]  50 %  1,800 of 3,600 tiles, 200/s, 0:09 left");
+    assert_string_equal(
+        line_of(&bar, drawing(3600), 23e3, 120),
+        "drawing tiles   [##############################] 100 %  3,600 of 3,600 tiles, 200/s, 0:00 left");
 }
 
 static void test_narrow(void **state) {
@@ -68,7 +70,8 @@ static void test_unknown_end(void **state) {
     assert_string_equal(line_of(&bar, features, 0, 80), "reading          1,234,567 features");
     const camber_progress_info silent = {"tessellating", -1, NULL, 0, 0};
     assert_string_equal(line_of(&bar, silent, 0, 80), "tessellating    ...");
-    const camber_progress_info long_stage = {"a stage with a name that is longer than a terminal is wide", 2, NULL, 0, 0};
+    const camber_progress_info long_stage = {"a stage with a name that is longer than a terminal is wide", 2, NULL, 0,
+                                             0};
     assert_true(strlen(line_of(&bar, long_stage, 0, 20)) == 19);
 }
 

@@ -1,3 +1,5 @@
+/* Makes the line of a progress bar from what a callback tells, and draws it over itself on standard error. The line is
+ * made by a clock that the caller passes, so that it can be tested; the rest only writes to the terminal. */
 #define _DEFAULT_SOURCE /* TIOCGWINSZ */
 
 #include "cli/progress.h"

@@ -243,7 +243,7 @@ static int print_text(const job *j) {
     return taken ? CAMBER_EXIT_DONE : camber_report_flush(session->report);
 }
 
-/* What came out are times, and the files that were asked for. */
+/* The times are the result, and so are files, if some were asked for. */
 static void say_done(const job *j) {
     const camber_options *options = j->session->options;
     char files[2048] = "";

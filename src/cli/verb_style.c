@@ -1,3 +1,5 @@
+/* Runs `camber style`: checks a style document, and prints what is wrong with it and what it draws; or evaluates an
+ * expression for given features, and prints the values as JSON. */
 #include "cli/input.h"
 #include "cli/verbs.h"
 

@@ -126,7 +126,7 @@ expect 2 "two boxes" render "$osm" -o a.png --bbox 0,0,1,1 --bbox 1,1,2,2
 says '^camber: --bbox 1,1,2,2: is the second --bbox; give one of them$'
 expect 2 "two layers" render "$osm" -o a.png --layer a --layer b
 expect 2 "two files of polylines" bench --polylines a --polylines b
-# Of two settings the last one counts.
+# The last of two settings counts.
 expect 2 "the last of two sizes" render "$osm" -o a.png --size 5x5 --size 0x5
 says '^camber: --size 0x5: '
 expect 0 "the last of two formats" render "$osm" -o a.png --format webp --format png --size 8x8

@@ -46,7 +46,7 @@ static void test_narrow(void **state) {
     }
 }
 
-/* What an earlier run had drawn is passed over at once, and says nothing of how long the rest takes. */
+/* Tiles of an earlier run are passed over at once, which says nothing of how long the rest takes. */
 static void test_pace(void **state) {
     (void)state;
     camber_progress_bar bar = {.drawn = false};

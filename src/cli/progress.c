@@ -59,10 +59,10 @@ static void fill_parts(const camber_progress_bar *bar, const camber_progress_inf
         snprintf(made->bar, sizeof made->bar, " [%s]", cells);
         snprintf(made->percent, sizeof made->percent, " %3d %%", (int)(fraction * 100));
     }
-    if (progress->unit && progress->total)
+    if (progress->unit && progress->total > 1)
         snprintf(made->count, sizeof made->count, "  %.24s of %.24s %.24s", camber_figure_count(progress->done).text,
                  camber_figure_count(progress->total).text, progress->unit);
-    else if (progress->unit)
+    else if (progress->unit && progress->done > 1)
         snprintf(made->count, sizeof made->count, "  %.24s %.24s", camber_figure_count(progress->done).text,
                  progress->unit);
     if (elapsed_ms < MEASURED_MS)

@@ -68,6 +68,8 @@ static void test_unknown_end(void **state) {
     camber_progress_bar bar = {.drawn = false};
     const camber_progress_info features = {"reading", -1, "features", 1234567, 0};
     assert_string_equal(line_of(&bar, features, 0, 80), "reading          1,234,567 features");
+    const camber_progress_info one = {"comparing", 0.5, "networks", 0, 1};
+    assert_string_equal(line_of(&bar, one, 0, 80), "comparing       [###############               ]  50 %");
     const camber_progress_info silent = {"tessellating", -1, NULL, 0, 0};
     assert_string_equal(line_of(&bar, silent, 0, 80), "tessellating    ...");
     const camber_progress_info long_stage = {"a stage with a name that is longer than a terminal is wide", 2, NULL, 0,

@@ -819,7 +819,7 @@ for type in '6 its tiles are MLT .*; make it again with MVT' '5 its tiles are pi
 done
 # A parallel across the world, and a line that goes the short way, over the antimeridian.
 echo '{"type":"MultiLineString","coordinates":[[[-180,0],[180,0]],[[-100,40],[100,40]]]}' >"$tmp/in/par.geojson"
-expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 300x300
+expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 300x300 -v
 says '^1 feature, 3 polylines, 6 points, '
 says '^antimeridian: crossed 1 time; '
 expect 0 "lines across the world, as JSON" render "$tmp/in/par.geojson" -o a.png -f --center 0,0 --zoom 0 --json
@@ -894,7 +894,7 @@ XML
 # Attribute filters: any key of OpenStreetMap, and what its driver makes on demand; a warning where nothing passes.
 for where in "lit = 'yes'" "\"highway\" = 'primary'" "osm_id = '10'" "other_tags LIKE '%lit%'" \
     "all_tags LIKE '%lit%'"; do
-    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where"
+    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where" -v
     says '^1 feature, '
     lacks "$tmp/stderr" warning
 done
@@ -1243,7 +1243,7 @@ done
 awk 'BEGIN { print "<osm version=\"0.6\">"
     for (i = 1; i <= 8000; i++) printf "<node id=\"%d\" lat=\"%.4f\" lon=\"1\"/>\n", i * 1000, 1 + i / 10000
     print "<way id=\"1\"><nd ref=\"1000\"/><nd ref=\"2000\"/><tag k=\"highway\" v=\"primary\"/></way></osm>" }' >"$tmp/in/nodes.osm"
-run env -C /proc -u TMPDIR OSM_MAX_TMPFILE_SIZE=1 "$tool" render "$tmp/in/nodes.osm" -o "$tmp/out/nodes.png" --size 64x64
+run env -C /proc -u TMPDIR OSM_MAX_TMPFILE_SIZE=1 "$tool" render "$tmp/in/nodes.osm" -o "$tmp/out/nodes.png" --size 64x64 -v
 name="no TMPDIR"
 verify 0
 says '^1 feature, '

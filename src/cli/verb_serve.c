@@ -701,6 +701,9 @@ int camber_verb_serve(camber_session *session) {
     if (status == CAMBER_EXIT_DONE)
         status = serve(session, server, &w);
     camber_server_destroy(server);
+    if (status == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, "serve", 0, camber_session_elapsed_ms(session),
+                           "every request that had begun was answered");
     if (!join_left(&w)) { /* its library cannot be stopped in another way */
         camber_guard_lock(session->guard);
         camber_guard_end(session->guard, status);

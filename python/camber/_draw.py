@@ -2,10 +2,12 @@
 
 import collections
 import operator
+import warnings
 
 import numpy
 
-from ._arrays import as_colors, dtype_of, parse_color, view
+from ._arrays import dtype_of, view
+from ._colors import NAMES, as_colors, parse_color
 from ._core import ArgumentError, check_memory, default, lib, ffi, pick
 from ._lines import as_lines, as_whole
 from ._text import add_passes, as_texts
@@ -33,6 +35,21 @@ def as_rows(rows, lines):
     return rows if lines.origins is None else rows[lines.origins]
 
 
+STYLE = ("width", "color", "rows", "size", "background", "join", "cap", "miter_limit", "offset", "gap", "blur", "dash",
+         "overlap", "opacity", "pitch")
+
+
+def explain_unknown(name):
+    """Says what to give instead of an argument that there is not."""
+    if name in ("column", "cmap", "legend", "vmin", "vmax"):
+        return "%s= colours lines by a column; camber.plot(data, column=...) does that" % name
+    if name in ("crs", "bbox"):
+        return "%s= is for data with a CRS; camber.plot(data, ...) projects it, and here lines are in pixels" % name
+    near = {"linewidth": "width", "lw": "width", "colors": "color", "colour": "color", "alpha": "opacity",
+            "figsize": "size", "linestyle": "dash"}.get(name)
+    return "there is no argument %r; %s" % (name, "give %s=" % near if near else "styles have %s" % ", ".join(STYLE))
+
+
 class Table:
     """Strokes and paints by row, and the row of each line, in the form that the library needs.
 
@@ -40,7 +57,9 @@ class Table:
     """
 
     def __init__(self, width, color, rows, lines, *, join="round", cap="butt", miter_limit=0, offset=0, gap=0, blur=0,
-                 dash=None):
+                 dash=None, **unknown):
+        if unknown:
+            raise TypeError(explain_unknown(next(iter(unknown))))
         if not (0 <= gap < float("inf") and 0 <= blur < float("inf")):
             raise ArgumentError("gap is %r and blur %r; give 0 or more pixels" % (gap, blur))
         colors, has_colors = as_colors(color)
@@ -59,6 +78,9 @@ class Table:
                                 % (" and ".join(map(str, sorted(counts))),
                                    "%d lines; give one for each, or rows" % wanted if wanted is not None
                                    else "both are chosen by row; give the same number of each"))
+        if not counts and rows is not None and len(rows):  # one width and colour for all rows
+            counts = {int(rows.max()) + 1}
+            colors = numpy.broadcast_to(colors, (max(counts), 4))
         self.count = counts.pop() if counts else 1
         self.rows = rows
         if rows is not None and len(rows) and int(rows.max()) >= self.count:
@@ -92,6 +114,30 @@ class Table:
 
 
 # ---- Pictures ----
+
+
+def warn_outside(lines, given, widths, size):
+    """Warns if no line can be in the picture, or if all of them are in one pixel."""
+    if not len(lines.points):
+        return
+    x, y = lines.points[:, 0], lines.points[:, 1]
+    low, high = (x.min(), y.min()), (x.max(), y.max())
+    if not numpy.isfinite((low, high)).all():
+        return
+    reach = float(numpy.max(widths, initial=0)) + 1
+    told = "camber.plot(...) fits lines into a picture, and here they are in pixels, with y down"
+    if any(high[i] < -reach or low[i] > size[i] + reach for i in (0, 1)):
+        warnings.warn("the picture is empty: the lines are at %g, %g to %g, %g, and it is %d x %d px; %s"
+                      % (*low, *high, *size, told), stacklevel=3)
+    elif hasattr(given, "crs") and high[0] - low[0] < 2 and high[1] - low[1] < 2:
+        warnings.warn("all lines are in %g x %g px; %s" % (high[0] - low[0], high[1] - low[1], told), stacklevel=3)
+
+
+def refuse_column(points, color):
+    """Refuses a colour that is the name of a column."""
+    if isinstance(color, str) and hasattr(points, "columns") and color in points.columns and color not in NAMES:
+        raise ArgumentError("color=%r is a column of the data; camber.plot(data, column=%r) colours lines by it"
+                            % (color, color))
 
 
 def as_size(size):
@@ -163,9 +209,11 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
          context=None, **style):
     """Draws lines in pixels, and texts over them; returns a uint8 array of height x width x 4."""
     context, texts = default(context), as_texts(texts)
+    refuse_column(points, color)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
     table = Table(width, color, as_rows(rows, lines), lines, **style)
     size = as_size(size)
+    warn_outside(lines, points, table.strokes["width_px"] + abs(table.strokes["offset_px"]), size)
     with context._core as core:
         _, renderer, mesh = context._open(core)
         polylines = make_polylines(core, lines, table.rows, keep_open)
@@ -200,6 +248,18 @@ def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_
                 view(data.indices, "u4", info.index_count, owner))
 
 
+def importance(points, offsets=None, *, context=None):
+    """Returns the importance of each point of lines, as Network takes it: the largest tolerance that keeps the point."""
+    lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
+    made = numpy.empty(len(lines.points), numpy.float32)
+    with default(context)._core as core:
+        core.check(lib.camber_importance_weigh(
+            core.pointer, ffi.from_buffer("double[]", lines.points),
+            ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)), len(lines),
+            ffi.from_buffer("float[]", made)))
+    return made
+
+
 class Network:
     """Lines in world units, which stay on the device while a camera moves over them. y points down."""
 
@@ -216,7 +276,7 @@ class Network:
             "offsets": ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)),
             "polyline_count": len(lines), "entries": ffi.from_buffer("camber_network_entry[]", entries),
             "entry_count": len(entries), "keep_open": keep_open, "has_arc_length": dashed})
-        self._dashed = dashed
+        self._dashed, self._has_importance = dashed, importance is not None or not len(lines)
         if importance is not None:
             importance = numpy.require(importance, numpy.float32, "CA")
             if importance.shape != (len(lines.points),):
@@ -239,6 +299,14 @@ class Network:
             scale = 0.96 * min(sides, default=1.0)
         return float(center[0]), float(center[1]), float(scale)
 
+    def _warn_outside(self, x, y, scale, width, size):
+        """Warns if the camera looks past the lines, however it is turned."""
+        west, north, east, south = self.bounds
+        away = numpy.hypot(max(west - x, x - east, 0), max(north - y, y - south, 0)) * scale
+        if away > numpy.hypot(*size) + width:
+            warnings.warn("the picture is empty: it shows %g, %g, and the lines are at %g, %g to %g, %g"
+                          % (x, y, *self.bounds), stacklevel=3)
+
     def draw(self, *, center=None, scale=None, bearing=0, pitch=0, simplify=0, width=8, color="#336",
              size=(1024, 1024), background=None, overlap="flatten", opacity=1, premultiplied=False, out=None, **style):
         """Draws what a camera sees. scale is in pixels per world unit; without center and scale everything is shown."""
@@ -246,7 +314,11 @@ class Network:
         table = Table(width, color, self._rows, None, **style)
         if table.dash is not None and not self._dashed:
             raise ArgumentError("dashes need a network that was made with dashed=True")
+        if simplify and not self._has_importance:
+            raise ArgumentError("simplify=%r needs the importance of each point; make the network with "
+                                "importance=camber.importance(points, offsets)" % simplify)
         x, y, scale = self._camera(center, scale, size)
+        self._warn_outside(x, y, scale, numpy.max(table.strokes["width_px"]), size)
         camera = ffi.new("camber_camera *", {
             "x": x, "y": y, "scale_px": scale, "bearing_deg": bearing, "width": size[0], "height": size[1],
             "simplify_px": simplify, "pitch_deg": pitch})

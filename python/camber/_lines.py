@@ -53,8 +53,16 @@ def as_whole(values, dtype, what):
     return numpy.require(array, dtype, "CA")
 
 
-def as_lines(points, offsets, dtype, offset_dtype):
-    """Converts any supported value to Lines of these types."""
+def is_pair(value):
+    """Whether this is a tuple of points and offsets, as Map.lines() and tracks() return it."""
+    return isinstance(value, tuple) and len(value) == 2 and all(isinstance(each, numpy.ndarray) for each in value) and \
+        (value[0].ndim, value[1].ndim) == (2, 1) and value[1].dtype.kind in "iu"
+
+
+def as_lines(points, offsets, dtype, offset_dtype, dots=False):
+    """Converts any supported value to Lines of these types. dots: points of Shapely are lines of one point."""
+    if offsets is None and is_pair(points):
+        points, offsets = points
     if isinstance(points, Lines):
         lines = points
     elif offsets is not None:
@@ -62,11 +70,11 @@ def as_lines(points, offsets, dtype, offset_dtype):
     elif hasattr(points, "__arrow_c_array__"):
         lines = from_arrow(points)
     elif hasattr(points, "geom_type") or hasattr(points, "geometry"):
-        lines = from_geometries(points)
+        lines = from_geometries(points, dots)
     elif hasattr(points, "__arrow_c_stream__"):
         lines = from_arrow_stream(points)
     elif isinstance(points, (list, tuple)) or getattr(points, "dtype", None) == object:
-        lines = from_list(points)
+        lines = from_list(points, dots)
     else:  # one line
         points = numpy.asarray(points)
         lines = Lines(points, [0, len(points) if points.ndim else 0])
@@ -87,10 +95,10 @@ def join(arrays, origins=None, origin_count=None):
     return Lines(points, offsets, origins, origin_count)
 
 
-def from_list(items):
+def from_list(items, dots=False):
     """Converts a list of arrays of points, or of geometries. A list of pairs of numbers is one line."""
     if len(items) and (hasattr(items[0], "geom_type") or items[0] is None):
-        return from_geometries(items)
+        return from_geometries(items, dots)
     if len(items) and all(numpy.ndim(item) == 1 and len(item) == 2 for item in items):
         return Lines(numpy.asarray(items), [0, len(items)])
     return join([as_points(item, numpy.float64) for item in items])
@@ -98,33 +106,71 @@ def from_list(items):
 
 # ---- Shapely and GeoPandas ----
 
+POINT, LINE, RING, POLYGON, LAST_SIMPLE = 0, 1, 2, 3, 3  # Shapely's numbers of types; those above are collections
 
-def parts_of(geometry):
+
+def parts_of(geometry, dots):
     """Returns the lines of a geometry as arrays of points: the parts of a collection, and the rings of polygons."""
     kind = None if geometry is None else geometry.geom_type
-    if kind in ("LineString", "LinearRing"):
+    if kind in ("LineString", "LinearRing") or (kind == "Point" and dots and not geometry.is_empty):
         points = numpy.asarray(geometry.coords, dtype=numpy.float64)
         yield points[:, :2] if len(points) else points.reshape(0, 2)
     elif kind == "Polygon":
         for ring in [geometry.exterior, *geometry.interiors] if not geometry.is_empty else []:
-            yield from parts_of(ring)
+            yield from parts_of(ring, dots)
     elif hasattr(geometry, "geoms"):
         for part in geometry.geoms:
-            yield from parts_of(part)
+            yield from parts_of(part, dots)
 
 
-def from_geometries(geometries):
-    """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame."""
+def from_each(geometries, dots):
+    """Converts geometries one by one, for Shapely 1."""
+    arrays, origins = [], []
+    for number, geometry in enumerate(geometries):
+        for part in parts_of(geometry, dots):
+            arrays.append(part)
+            origins.append(number)
+    return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
+
+
+def from_all(shapely, geometries, dots):
+    """Converts geometries by calls of Shapely 2 that take all of them at once."""
+    count, origins = len(geometries), numpy.arange(len(geometries))
+    kinds = shapely.get_type_id(geometries)
+    while (kinds > LAST_SIMPLE).any():  # collections may be nested
+        geometries, index = shapely.get_parts(geometries, return_index=True)
+        origins, kinds = origins[index], shapely.get_type_id(geometries)
+    if (kinds == POLYGON).any():
+        rest = kinds != POLYGON
+        rings, index = shapely.get_rings(geometries[~rest], return_index=True)
+        order = numpy.argsort(numpy.concatenate([numpy.flatnonzero(rest), numpy.flatnonzero(~rest)[index]]), kind="stable")
+        origins = numpy.concatenate([origins[rest], origins[~rest][index]])[order]
+        geometries = numpy.concatenate([geometries[rest], rings])[order]
+        kinds = shapely.get_type_id(geometries)
+    counts = shapely.get_num_coordinates(geometries)
+    taken = (kinds == LINE) | (kinds == RING) | ((kinds == POINT) & (counts > 0) & dots)
+    if not taken.all():
+        geometries, origins, counts = geometries[taken], origins[taken], counts[taken]
+    offsets = numpy.concatenate([[0], numpy.cumsum(counts)])
+    return Lines(shapely.get_coordinates(geometries), offsets, origins, count)
+
+
+def from_geometries(geometries, dots=False):
+    """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame. dots: points are
+    lines of one point."""
     if hasattr(geometries, "geom_type") and isinstance(geometries.geom_type, str):
         geometries = [geometries]
     else:
         geometries = getattr(geometries, "geometry", geometries)
-    arrays, origins = [], []
-    for number, geometry in enumerate(geometries):
-        for part in parts_of(geometry):
-            arrays.append(part)
-            origins.append(number)
-    return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
+    try:
+        import shapely
+        array = numpy.empty(len(geometries), object)
+        array[:] = geometries
+        if not (shapely.is_geometry(array) | shapely.is_missing(array)).all():
+            return from_each(geometries, dots)
+    except (ImportError, AttributeError):  # there is no Shapely, or it is Shapely 1
+        return from_each(geometries, dots)
+    return from_all(shapely, array, dots)
 
 
 # ---- GeoArrow, through Arrow's C data interface ----

@@ -263,6 +263,8 @@ def importance(points, offsets=None, *, context=None):
 class Network:
     """Lines in world units, which stay on the device while a camera moves over them. y points down."""
 
+    _warns = True  # of empty pictures
+
     def __init__(self, points, offsets=None, *, rows=None, importance=None, keep_open=False, dashed=False,
                  context=None):
         self._context = default(context)
@@ -284,6 +286,7 @@ class Network:
                                     % (importance.shape, len(lines.points)))
             desc.importance = ffi.from_buffer("float[]", importance)
         finite = lines.points[numpy.isfinite(lines.points).all(axis=1)]
+        self._has_points = len(finite) > 0
         self.bounds = tuple(finite.min(axis=0)) + tuple(finite.max(axis=0)) if len(finite) else (0.0, 0.0, 1.0, 1.0)
         with self._context._core as core:
             device, renderer, _ = self._context._open(core)
@@ -303,7 +306,7 @@ class Network:
         """Warns if the camera looks past the lines, however it is turned."""
         west, north, east, south = self.bounds
         away = numpy.hypot(max(west - x, x - east, 0), max(north - y, y - south, 0)) * scale
-        if away > numpy.hypot(*size) + width:
+        if self._has_points and away > numpy.hypot(*size) + width:
             warnings.warn("the picture is empty: it shows %g, %g, and the lines are at %g, %g to %g, %g"
                           % (x, y, *self.bounds), stacklevel=3)
 
@@ -318,7 +321,8 @@ class Network:
             raise ArgumentError("simplify=%r needs the importance of each point; make the network with "
                                 "importance=camber.importance(points, offsets)" % simplify)
         x, y, scale = self._camera(center, scale, size)
-        self._warn_outside(x, y, scale, numpy.max(table.strokes["width_px"]), size)
+        if self._warns:
+            self._warn_outside(x, y, scale, numpy.max(table.strokes["width_px"]), size)
         camera = ffi.new("camber_camera *", {
             "x": x, "y": y, "scale_px": scale, "bearing_deg": bearing, "width": size[0], "height": size[1],
             "simplify_px": simplify, "pitch_deg": pitch})
@@ -329,8 +333,8 @@ class Network:
             return render_frame(core, renderer, frame, out, premultiplied)
 
 
-def encode(picture, format="png", *, quality=None, premultiplied=False, context=None):
-    """Returns a picture encoded as PNG or WebP, as bytes."""
+def encode(picture, format="png", *, quality=None, premultiplied=False, dpi=0, context=None):
+    """Returns a picture encoded as PNG or WebP, as bytes. dpi: what a PNG says of its size on paper."""
     picture = numpy.asarray(picture)
     if picture.dtype != numpy.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or not picture.size:
         raise ArgumentError("the picture has the type %s and the shape %s; give uint8, height x width x 4"
@@ -338,7 +342,8 @@ def encode(picture, format="png", *, quality=None, premultiplied=False, context=
     picture = numpy.ascontiguousarray(picture)
     height, width = picture.shape[:2]
     pixels = ffi.from_buffer("uint8_t[]", picture)
-    desc = ffi.new("camber_encoder_desc *", {"encoding": pick(ENCODINGS, "format", format), "quality": quality or 0})
+    desc = ffi.new("camber_encoder_desc *", {"encoding": pick(ENCODINGS, "format", format), "quality": quality or 0,
+                                           "dpi": dpi})
     with default(context)._core as core:
         encoder = core.make(lib.camber_encoder_create, core.pointer, desc)
         if not premultiplied:

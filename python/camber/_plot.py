@@ -219,7 +219,7 @@ class Categories:
 
 def draw_scale(scale, title, ink, paper, context):
     """Draws a bar of colours with its ticks."""
-    length, thick, left, top = 240, 12, 16, 34 if title else 14
+    length, thick, left, top = SHADES, 12, 16, 34 if title else 14
     ticks, step = find_ticks(scale.low, scale.high)
     if scale.unit is not None:
         ticks, step = [scale.low, scale.high] if scale.high > scale.low else [scale.low], 0
@@ -388,6 +388,7 @@ def plot(data, column=None, *, cmap=None, vmin=None, vmax=None, color=None, miss
             rows = range(lines.origin_count)
         network = Network(Lines(points * (1, -1), lines.offsets, lines.origins, lines.origin_count), rows=rows,
                           context=context)
+        network._warns = False  # warn_of_nothing has told
         picture = network.draw(center=(fit.center[0], -fit.center[1]), scale=fit.scale, **style)
     if colored is not None and legend:
         add_legend(picture, colored, title if title is not None else column if isinstance(column, str) else None,

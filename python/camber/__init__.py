@@ -2,6 +2,7 @@
 
 from ._core import (ArgumentError, Context, DeviceError, Error, FileError, InputError, LimitError, NotFoundError,
                     OutOfMemoryError, devices, lib as _lib, version as _version)
+from ._density import Density, density
 from ._draw import Mesh, Network, draw, encode, importance, tessellate
 from ._map import Map, render, styles, tiles
 from ._plot import Plot, plot
@@ -9,8 +10,8 @@ from ._text import Text
 from . import text
 
 __version__ = _version()
-__all__ = ["ArgumentError", "Context", "DeviceError", "Error", "FileError", "InputError", "LimitError", "Map", "Mesh",
-           "Network", "NotFoundError", "OutOfMemoryError", "Plot", "Text", "devices", "draw", "encode",
+__all__ = ["ArgumentError", "Context", "Density", "DeviceError", "Error", "FileError", "InputError", "LimitError", "Map", "Mesh",
+           "Network", "NotFoundError", "OutOfMemoryError", "Plot", "Text", "density", "devices", "draw", "encode",
            "importance", "plot", "render", "styles", "tessellate", "text", "tiles"]
 
 if __version__.split(".")[:2] != [str(_lib.CAMBER_VERSION_MAJOR), str(_lib.CAMBER_VERSION_MINOR)]:

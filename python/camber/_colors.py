@@ -1,6 +1,7 @@
 """Colours: their names in CSS, parsing, and colour maps."""
 
 import difflib
+import importlib
 
 import numpy
 
@@ -123,8 +124,7 @@ def as_colors(color):
 def _from_matplotlib(name, count):
     """Returns a colour map of matplotlib's, if matplotlib is installed and has it."""
     try:
-        import matplotlib
-        return matplotlib.colormaps[name](numpy.linspace(0, 1, count)).astype(numpy.float32)
+        return importlib.import_module("matplotlib").colormaps[name](numpy.linspace(0, 1, count)).astype(numpy.float32)
     except (ImportError, AttributeError, KeyError):
         return None
 

@@ -225,6 +225,43 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
         return picture
 
 
+def as_sums(width, height):
+    """Returns an array of floats that kernels can write to directly, one per pixel."""
+    return as_output(None, width, height).reshape(height, width * 4).view(numpy.float32)
+
+
+def sum_lines(lines, *, width, weights, size, context, camera=None, **style):
+    """Returns how many origins of lines cover each pixel, each times its weight; lines are in pixels, or, with a camera
+    (x, y, scale), in its units."""
+    if lines.origins is None:
+        rows = numpy.arange(len(lines), dtype=numpy.uint32)
+    else:
+        rows = lines.origins.astype(numpy.uint32)
+    table = Table(width, "#000", rows, None, **style)
+    if weights is not None and len(rows):
+        table.paints["color"]["r"] = weights[:len(table.paints)]
+    else:
+        table.paints["color"]["r"] = 1
+    sums = as_sums(*size)
+    with context._core as core:
+        _, renderer, mesh = context._open_summing(core)
+        if camera is None:
+            polylines = make_polylines(core, lines, rows, False)
+            core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation()))
+        else:
+            desc, kept = describe_network(lines, rows)
+            desc.step = 1 / (4096 * camera[2])  # so that a line's points do not depend on the other lines
+            network = core.make(lib.camber_network_create, core.pointer, desc)
+            view = ffi.new("camber_camera *", {"x": camera[0], "y": camera[1], "scale_px": camera[2], "width": size[0],
+                                               "height": size[1]})
+            core.check(lib.camber_mesh_tessellate_network(mesh, network, view, table.tessellation()))
+            del kept
+        frame, passes = frame_of(table, mesh, size, None, "flatten", 1)
+        core.check(lib.camber_renderer_sum(renderer, frame, ffi.from_buffer("float[]", sums), sums.strides[0], ffi.NULL))
+        del passes
+    return sums
+
+
 Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")
 
 
@@ -260,6 +297,18 @@ def importance(points, offsets=None, *, context=None):
     return made
 
 
+def describe_network(lines, rows):
+    """Returns a description of a network, and what it refers to."""
+    entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
+    entries["polyline"] = numpy.arange(len(lines))
+    entries["row"] = 0 if rows is None else rows
+    kept = [ffi.from_buffer("double[]", lines.points), ffi.from_buffer("uint64_t[]", lines.offsets),
+            ffi.from_buffer("camber_network_entry[]", entries)]
+    return ffi.new("camber_network_desc *", {
+        "points": kept[0], "offsets": ffi.cast("size_t *", kept[1]), "polyline_count": len(lines), "entries": kept[2],
+        "entry_count": len(entries)}), kept
+
+
 class Network:
     """Lines in world units, which stay on the device while a camera moves over them. y points down."""
 
@@ -270,14 +319,8 @@ class Network:
         self._context = default(context)
         lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
         self._rows = as_rows(rows, lines)
-        entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
-        entries["polyline"] = numpy.arange(len(lines))
-        entries["row"] = 0 if rows is None else self._rows
-        desc = ffi.new("camber_network_desc *", {
-            "points": ffi.from_buffer("double[]", lines.points),
-            "offsets": ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)),
-            "polyline_count": len(lines), "entries": ffi.from_buffer("camber_network_entry[]", entries),
-            "entry_count": len(entries), "keep_open": keep_open, "has_arc_length": dashed})
+        desc, kept = describe_network(lines, self._rows)
+        desc.keep_open, desc.has_arc_length = keep_open, dashed
         self._dashed, self._has_importance = dashed, importance is not None or not len(lines)
         if importance is not None:
             importance = numpy.require(importance, numpy.float32, "CA")
@@ -306,7 +349,7 @@ class Network:
         """Warns if the camera looks past the lines, however it is turned."""
         west, north, east, south = self.bounds
         away = numpy.hypot(max(west - x, x - east, 0), max(north - y, y - south, 0)) * scale
-        if self._has_points and away > numpy.hypot(*size) + width:
+        if self._has_points and numpy.isfinite(away) and away > numpy.hypot(*size) + width:
             warnings.warn("the picture is empty: it shows %g, %g, and the lines are at %g, %g to %g, %g"
                           % (x, y, *self.bounds), stacklevel=3)
 

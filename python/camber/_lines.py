@@ -1,6 +1,7 @@
 """Converts lines from arrays, lists of arrays, GeoArrow, Shapely and GeoPandas into points and offsets."""
 
 import ctypes
+import importlib
 
 import numpy
 
@@ -163,12 +164,14 @@ def from_geometries(geometries, dots=False):
     else:
         geometries = getattr(geometries, "geometry", geometries)
     try:
-        import shapely
+        shapely = importlib.import_module("shapely")
+        if not hasattr(shapely, "get_parts"):
+            return from_each(geometries, dots)
         array = numpy.empty(len(geometries), object)
         array[:] = geometries
         if not (shapely.is_geometry(array) | shapely.is_missing(array)).all():
             return from_each(geometries, dots)
-    except (ImportError, AttributeError):  # there is no Shapely, or it is Shapely 1
+    except ImportError:
         return from_each(geometries, dots)
     return from_all(shapely, array, dots)
 

@@ -1,5 +1,6 @@
 """Maps: files drawn with a style, into arrays, pages or archives of tiles."""
 
+import importlib
 import json
 import os
 import re
@@ -102,8 +103,7 @@ def as_json(value):
 def find_geojson(geometries):
     """Returns each geometry as GeoJSON."""
     try:
-        import shapely
-        return shapely.to_geojson(numpy.asarray(geometries, dtype=object))
+        return importlib.import_module("shapely").to_geojson(numpy.asarray(geometries, dtype=object))
     except (ImportError, AttributeError):  # Shapely 1
         return [None if each is None else json.dumps(each.__geo_interface__) for each in geometries]
 
@@ -218,7 +218,7 @@ class Map:
         text = ffi.new("char[1024]")
         lib.camber_features_explain_nothing(self._features, info.zoom, info.zoom, text, len(text))
         why = re.sub(r"--bbox ([-+.,e\d]+)", r"bbox=(\1)", text_of(text))
-        warnings.warn("the picture is empty: %s" % re.sub(r"--(\w)", r"\1", why), stacklevel=3)
+        warnings.warn("the picture is empty: %s" % re.sub(r"--(\w+)", r"\1=", why), stacklevel=3)
 
     def draw(self, *, center=None, zoom=None, bbox=None, bearing=None, pitch=None, size=(1024, 1024), ratio=1,
              simplify=SIMPLIFY_PX, method="strip", premultiplied=False, out=None):

@@ -126,7 +126,7 @@ def box_of(points):
 class Fit:
     """How world coordinates with y up become pixels: size, and (x, y) * (scale, -scale) + shift."""
 
-    def __init__(self, box, size):
+    def __init__(self, box, size, margin=MARGIN):
         width, height = max(box[2] - box[0], 0.0), max(box[3] - box[1], 0.0)
         if size is None or isinstance(size, (int, numpy.integer)):
             longest = LONGEST if size is None else int(size)
@@ -134,9 +134,14 @@ class Fit:
             ratios = [max(side / most, 1 / FLATTEST) if most > 0 else 1.0 for side in (width, height)]
             size = [max(round(longest * ratio), 1) for ratio in ratios]
         self.size = as_size(size)
-        scales = [(1 - 2 * MARGIN) * side / length for side, length in zip(self.size, (width, height)) if length > 0]
+        scales = [(1 - 2 * margin) * side / length for side, length in zip(self.size, (width, height)) if length > 0]
         self.scale = min(scales, default=1.0)
         self.center = (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
+
+    @property
+    def bounds(self):
+        half = [side / 2 / self.scale for side in self.size]
+        return tuple(center + sign * side for sign in (-1, 1) for center, side in zip(self.center, half))
 
     def to_pixels(self, points):
         pixels = numpy.empty(points.shape, numpy.float32)
@@ -369,7 +374,7 @@ def plot(data, column=None, *, cmap=None, vmin=None, vmax=None, color=None, miss
     box = box_of(points)
     shown = None if bbox is None else project_box(bbox, own_crs, crs)
     warn_of_nothing(lines, box, shown)
-    fit = Fit(shown or box or (0.0, 0.0, 1.0, 1.0), size)
+    fit = Fit(shown or box or (0.0, 0.0, 1.0, 1.0), size, 0 if shown else MARGIN)
     colored = None
     if column is not None:
         colored = find_colors(data, column, cmap, (vmin, vmax), missing, lines.origin_count)
@@ -393,6 +398,4 @@ def plot(data, column=None, *, cmap=None, vmin=None, vmax=None, color=None, miss
     if colored is not None and legend:
         add_legend(picture, colored, title if title is not None else column if isinstance(column, str) else None,
                    background, context)
-    half = [side / 2 / fit.scale for side in fit.size]
-    bounds = tuple(center + sign * side for sign in (-1, 1) for center, side in zip(fit.center, half))
-    return Plot(picture, bounds, crs if crs is not None else own_crs, context)
+    return Plot(picture, fit.bounds, crs if crs is not None else own_crs, context)

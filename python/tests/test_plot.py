@@ -2,6 +2,8 @@
 
 import os
 import re
+import subprocess
+import sys
 import warnings
 
 import numpy
@@ -253,6 +255,31 @@ def test_shades():
     assert counts._repr_png_()[:4] == b"\x89PNG"
     flat = camber.density([LINES[0]], size=(50, 50)).shade(span=(0, 5), how="linear")
     assert flat.picture.shape == (50, 50, 4)
+
+
+# ---- A notebook ----
+
+
+def test_a_notebook_shows_pictures(tmp_path):
+    for module in "nbconvert", "nbformat", "ipykernel", "geopandas":
+        pytest.importorskip(module)
+    import base64
+    import json
+    source = ["import geopandas, camber\n", "from shapely.geometry import LineString\n",
+              "lines = geopandas.GeoDataFrame({'speed': [1, 2]}, crs=4326, geometry=[LineString([(1, 1), (2, 2)]),\n",
+              "                                                                    LineString([(1, 2), (2, 1)])])\n",
+              "camber.plot(lines, column='speed', size=(120, 100))"]
+    cells = [{"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": [], "source": each}
+             for each in (source, ["camber.density(lines, size=(60, 50))"], ["camber.Map(lines)"])]
+    notebook = tmp_path / "a.ipynb"
+    notebook.write_text(json.dumps({"cells": cells, "metadata": {"kernelspec": {
+        "name": "python3", "display_name": "Python", "language": "python"}}, "nbformat": 4, "nbformat_minor": 2}))
+    subprocess.run([sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--output", "b.ipynb", notebook],
+                   check=True, cwd=tmp_path, capture_output=True, env={**os.environ, "HOME": str(tmp_path)})
+    pictures = [base64.b64decode(output["data"]["image/png"]) for cell in json.loads((tmp_path / "b.ipynb").read_text())["cells"]
+                for output in cell["outputs"] if "data" in output]
+    sizes = [(int.from_bytes(picture[16:20], "big"), int.from_bytes(picture[20:24], "big")) for picture in pictures]
+    assert sizes == [(120, 100), (60, 50), (1024, 1024)]
 
 
 # ---- Maps ----

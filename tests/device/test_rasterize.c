@@ -613,7 +613,7 @@ static void test_sums(void **state) {
     camber_made_scene_free(&s.lines);
 }
 
-/* What is not only opaque lines is refused. */
+/* Frames of more than opaque lines are refused. */
 static void test_sums_refused(void **state) {
     fixture *e = *state;
     camber_renderer *renderer = e->on.renderer[CAMBER_FIXTURE_OPENCL];

@@ -87,6 +87,8 @@ def encode(picture: _Picture, format: str = "png", *, quality: Optional[int] = N
 
 def importance(points: _Lines, offsets: Optional[Any] = None, *, context: Optional[Context] = None) -> _Array: ...
 
+def tracks(table: Any, x: str = "x", y: str = "y", by: Optional[str] = None) -> Tuple[_Array, _Array]: ...
+
 class Plot:
     picture: _Picture
     bounds: _Bbox

@@ -85,7 +85,7 @@ def density(data, offsets=None, *, weights=None, width=1, size=None, bbox=None, 
     name of a column, or one value for each line. The other arguments are those of plot().
     """
     lines = as_lines(data, offsets, numpy.float64, numpy.int64, dots=True)
-    own_crs = crs_of(data)
+    own_crs = crs_of(data, lines)
     points = project(lines.points, own_crs, crs)
     box = box_of(points)
     shown = None if bbox is None else project_box(bbox, own_crs, crs)

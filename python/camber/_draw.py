@@ -9,7 +9,7 @@ import numpy
 from ._arrays import dtype_of, view
 from ._colors import NAMES, as_colors, parse_color
 from ._core import ArgumentError, check_memory, default, lib, ffi, pick
-from ._lines import as_lines, as_whole
+from ._lines import as_lines, as_whole, columns_of
 from ._text import add_passes, as_texts
 
 JOINS = {"round": lib.CAMBER_JOIN_ROUND, "miter": lib.CAMBER_JOIN_MITER, "bevel": lib.CAMBER_JOIN_BEVEL}
@@ -135,7 +135,7 @@ def warn_outside(lines, given, widths, size):
 
 def refuse_column(points, color):
     """Refuses a colour that is the name of a column."""
-    if isinstance(color, str) and hasattr(points, "columns") and color in points.columns and color not in NAMES:
+    if isinstance(color, str) and color in columns_of(points) and color not in NAMES:
         raise ArgumentError("color=%r is a column of the data; camber.plot(data, column=%r) colours lines by it"
                             % (color, color))
 

@@ -11,7 +11,7 @@ import numpy
 from ._colors import CATEGORIES, SHADES, as_colors, parse_color, sample
 from ._core import ArgumentError
 from ._draw import Network, as_size, draw, encode
-from ._lines import Lines, as_lines
+from ._lines import Lines, as_lines, columns_of, to_array
 from ._text import Text
 
 MARGIN = 0.02  # of the picture, on each side
@@ -24,25 +24,21 @@ MERCATOR_RADIUS, MERCATOR_LATITUDE = 6378137.0, 85.051129
 # ---- Tables ----
 
 
-def crs_of(data):
-    """Returns the CRS of a GeoDataFrame or a GeoSeries as pyproj has it, or None."""
+def crs_of(data, lines):
+    """Returns the CRS of a GeoDataFrame, a GeoSeries or GeoArrow as pyproj has it, or None."""
     crs = getattr(data, "crs", None)
-    return crs if hasattr(crs, "is_geographic") else None
-
-
-def columns_of(data):
-    """Returns the names of a table's columns: pandas', polars' or pyarrow's. Empty: this is no table."""
-    names = getattr(data, "column_names", None)  # pyarrow
-    names = getattr(data, "columns", ()) if names is None else names
-    return [str(name) for name in names] if not callable(names) else []
+    if hasattr(crs, "is_geographic"):
+        return crs
+    if lines.crs is None:
+        return None
+    from pyproj import CRS
+    return CRS.from_user_input(lines.crs)
 
 
 def as_values(values):
     """Returns a column as an array: of floats, in which what is missing is NaN, of dates, or of objects, which are
     categories, None if missing."""
-    if hasattr(values, "to_numpy"):  # pandas, polars, pyarrow
-        values = values.to_numpy()
-    values = numpy.asarray(values)
+    values = numpy.asarray(to_array(values))
     if values.dtype.kind in "fiu":
         return values.astype(numpy.float64, copy=False)
     if values.dtype.kind in "mM":
@@ -368,8 +364,8 @@ def plot(data, column=None, *, cmap=None, vmin=None, vmax=None, color=None, miss
         raise ArgumentError("cmap=%r colours the values of a column; give column= too" % (cmap,))
     if isinstance(width, str):
         raise ArgumentError("width=%r; give pixels, or one number for each line, such as data[%r]" % (width, width))
-    own_crs = crs_of(data)
     lines = as_lines(data, None, numpy.float64, numpy.int64, dots=True)
+    own_crs = crs_of(data, lines)
     points = project(lines.points, own_crs, crs)
     box = box_of(points)
     shown = None if bbox is None else project_box(bbox, own_crs, crs)

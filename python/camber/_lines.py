@@ -168,7 +168,7 @@ def from_each(geometries, dots):
 
 def from_linestrings(geometries):
     """Converts linestrings by their WKB, which is twice as fast in Shapely 1. None: there is something else among them."""
-    if not len(geometries) or any(getattr(each, "geom_type", None) != "LineString" for each in geometries):
+    if not len(geometries) or any(type(each).__name__ != "LineString" for each in geometries):
         return None
     geos = importlib.import_module("shapely.geos")
     writer = geos.WKBWriter(geos.lgeos)
@@ -176,7 +176,7 @@ def from_linestrings(geometries):
     sizes = numpy.fromiter(map(len, pieces), numpy.int64, len(pieces))
     data = numpy.frombuffer(b"".join(pieces), numpy.uint8)
     heads = (numpy.cumsum(sizes) - sizes)[:, None] + numpy.arange(9)  # order of bytes, type, number of points
-    if (data[heads[:, :5]] != (1, 1, 0, 0, 0)).any():
+    if (data[heads[:, :5]] != (1, 2, 0, 0, 0)).any():
         return None  # 3-D, or of another order
     is_point = numpy.ones(len(data), bool)
     is_point[heads] = False

@@ -11,7 +11,7 @@ import pytest
 
 import camber
 import png_rows
-from camber._lines import from_each, from_geometries
+from camber._lines import from_each, from_geometries, from_linestrings
 
 LINES = [numpy.array([[10.0, 50], [10.2, 50.1]]), numpy.array([[10.0, 50.1], [10.2, 50]]),
          numpy.array([[10.1, 50], [10.1, 50.1], [10.15, 50.05]])]
@@ -51,6 +51,21 @@ def test_geometries_all_at_once_are_those_one_by_one():
             assert ours.origin_count == theirs.origin_count
             for a, b in zip((ours.points, ours.offsets, ours.origins), (theirs.points, theirs.offsets, theirs.origins)):
                 assert numpy.array_equal(a, b)
+
+
+def test_linestrings_by_their_wkb():
+    shapely = pytest.importorskip("shapely")
+    if hasattr(shapely, "get_parts"):
+        pytest.skip("for Shapely 1")
+    from shapely.geometry import LineString, MultiLineString
+    lines = [LineString(line) for line in LINES]
+    for geometries in lines, [*lines, lines[0]]:
+        ours, theirs = from_linestrings(geometries), from_each(geometries, False)
+        assert (ours.points == theirs.points).all() and (ours.offsets == theirs.offsets).all()
+        assert (ours.origins == theirs.origins).all() and ours.origin_count == theirs.origin_count
+    for other in LineString([(0, 0, 1), (1, 1, 1)]), MultiLineString([LINES[0]]), None:
+        assert from_linestrings([*lines, other]) is None
+        assert len(from_geometries([*lines, other])) >= 3
 
 
 # ---- Plots ----

@@ -66,11 +66,12 @@ struct camber_features {
     char **layer_names; /* source layers, in the order in which they were found */
     size_t layer_count, layer_capacity;
 
-    bool wants_labels;    /* files are also read for symbol layers (labels.c) */
-    bool has_region;      /* readers keep only features that touch the region */
-    camber_region region; /* the region that a scene needs; read_for.c sets it */
-    uint32_t source;      /* the source of classes that are added from now on; CAMBER_NO_SOURCE at first */
-    char *attribution;    /* attribution_size bytes and a final 0; NULL: none yet */
+    size_t extract_first, extract_end; /* the polylines of extracts, which may reach far beyond what these are about */
+    bool wants_labels;                 /* files are also read for symbol layers (labels.c) */
+    bool has_region;                   /* readers keep only features that touch the region */
+    camber_region region;              /* the region that a scene needs; read_for.c sets it */
+    uint32_t source;                   /* the source of classes that are added from now on; CAMBER_NO_SOURCE at first */
+    char *attribution;                 /* attribution_size bytes and a final 0; NULL: none yet */
     size_t attribution_size, attribution_capacity;
     camber_features_stats stats;
     camber_features_times times;

@@ -93,6 +93,8 @@ camber_status camber_features_create_for(camber_context *context, const camber_s
 /* Whether reading the same files for another style would give the same set, because all features are from files and the
  * other style reads the same features and properties from them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
+/* Marks the polylines from first_polyline on as an extract of OpenStreetMap. */
+void camber_features_add_extract(camber_features *features, size_t first_polyline);
 /* Returns a hash that changes when features are read, or the style, its sprites or its fonts are replaced. */
 uint64_t camber_features_key(const camber_features *features);
 /* Frees the points of the lines, which take most of a set's memory. Call this after the set's last scene was made,

@@ -238,10 +238,10 @@ set(bed_template [=[
 # Areas, such as pedestrian squares, get no road around them; the style city fills them.
 set(not_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
 
-# Appends the casings and the fills of a level. The casing of a bridge ends where the bridge does, and so does a motorway
-# or a trunk road on the ground, because what it leads to is below it: a lesser road, or the tunnel in which it goes on.
-# Everything else overlaps its neighbour, including the fill of a bridge; otherwise its casing would show through the
-# smooth edge of its end.
+# Appends the casings and the fills of a level. The casing of a bridge ends where the bridge does. On the ground, roads
+# from tertiary ones up end where the next way begins: it is a lesser road or a tunnel, which is below and has a round end,
+# or one of several roads of the class, which fill the corner together. Everything else overlaps its neighbour, including
+# the fill of a bridge; otherwise its casing would show through the smooth edge of its end.
 macro(append_roads out id level test)
   set(FILTER "[\"all\", ${not_area}, ${is_road}, ${test}]")
   foreach(part IN ITEMS casing fill)
@@ -252,7 +252,7 @@ macro(append_roads out id level test)
     if("${level}-${part}" STREQUAL "bridge-casing")
       set(CAP "\"butt\"")
     elseif("${level}" STREQUAL "ground")
-      set(CAP "[\"case\", [\">=\", ${INDEX}, 10], \"butt\", \"round\"]")
+      set(CAP "[\"case\", [\">=\", ${INDEX}, 7], \"butt\", \"round\"]")
     endif()
     append_layer(${out} "${road_template}")
   endforeach()

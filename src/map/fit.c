@@ -85,7 +85,7 @@ static two_bounds bounds_of_all(const camber_features *features, const camber_vi
     return bounds;
 }
 
-/* ---- What an extract is about ---- */
+/* ---- Extracts ---- */
 
 typedef struct outer_sides {
     size_t count;

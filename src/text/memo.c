@@ -37,8 +37,8 @@ static camber_text *copy_text(const camber_text *text) {
         return NULL;
     *copy = *text;
     copy->glyphs = camber_alloc(context, text->glyph_count, sizeof *copy->glyphs);
-    copy->lines = camber_alloc(context, text->line_count, sizeof *copy->lines);
-    if (!copy->glyphs || !copy->lines) {
+    copy->lines = copy->glyphs ? camber_alloc(context, text->line_count, sizeof *copy->lines) : NULL;
+    if (!copy->lines) {
         camber_text_destroy(copy);
         return NULL;
     }
@@ -53,9 +53,7 @@ static camber_text *copy_text(const camber_text *text) {
 static camber_status remember(camber_context *context, remembered *slot, const camber_text_key *key,
                               const camber_text *text) {
     forget(context, slot);
-    slot->key = camber_alloc(context, key->size_bytes, 1);
-    slot->text = copy_text(text);
-    if (!slot->key || !slot->text) {
+    if (!(slot->key = camber_alloc(context, key->size_bytes, 1)) || !(slot->text = copy_text(text))) {
         forget(context, slot);
         return CAMBER_ERROR_MEMORY;
     }

@@ -160,22 +160,27 @@ static void tell_too_far(const camber_zoom_labels *z, const camber_label_layout 
     z->desc.things->told_too_far = true;
 }
 
+/* Selects the things that may have labels in a block's surroundings, unless these are all things, or go around the
+ * world. Then the domain is the whole world. */
+static camber_status find_domain(const camber_zoom_labels *z, const camber_box *known, camber_label_domain *domain,
+                                 camber_label_things *near) {
+    const double world = z->view.scale_px;
+    *domain = (camber_label_domain){.known = *known, .world_px = world};
+    *near = (camber_label_things){0};
+    if (known->x1 - known->x0 + 2.0 * CAMBER_LABEL_REACH_PX <= world) {
+        const camber_box seen = scale(known, 1.0 / world);
+        const camber_status status = camber_label_things_select(z->desc.things, &seen, near);
+        if (status != CAMBER_OK || near->count < z->desc.things->count)
+            return status;
+    }
+    *domain = (camber_label_domain){.known = {0.0, -INFINITY, world, INFINITY}, .whole = true, .world_px = world};
+    return CAMBER_OK;
+}
+
 static camber_status place_with_margin(camber_zoom_labels *z, label_block *block, double margin_px, bool *settled) {
     const camber_box known = widen(&block->box, margin_px);
-    const double world = z->view.scale_px;
-    camber_label_things near = {0};
-    block->domain = (camber_label_domain){.known = known, .world_px = world};
-    if (known.x1 - known.x0 + 2.0 * CAMBER_LABEL_REACH_PX > world) {
-        block->domain.known = (camber_box){0.0, -INFINITY, world, INFINITY};
-        block->domain.whole = true;
-    } else {
-        const camber_box seen = scale(&known, 1.0 / world);
-        const camber_status status = camber_label_things_select(z->desc.things, &seen, &near);
-        if (status != CAMBER_OK) {
-            camber_label_things_free(&near);
-            return status;
-        }
-    }
+    camber_label_things near;
+    camber_status status = find_domain(z, &known, &block->domain, &near);
     camber_label_layout_free(&block->layout);
     block->layout = (camber_label_layout){
         .context = z->context,
@@ -183,10 +188,11 @@ static camber_status place_with_margin(camber_zoom_labels *z, label_block *block
         .view = &z->view,
         .things = block->domain.whole ? z->desc.things : &near,
         .domain = &block->domain,
-        .least_importance = (double)(float)fmax(CAMBER_LABEL_SIMPLIFY_PX / world, z->desc.least_importance),
+        .least_importance = (double)(float)fmax(CAMBER_LABEL_SIMPLIFY_PX / z->view.scale_px, z->desc.least_importance),
         .fonts = z->desc.features->fonts,
         .sprites = z->desc.features->sprites};
-    camber_status status = camber_label_layout_make(&block->layout);
+    if (status == CAMBER_OK)
+        status = camber_label_layout_make(&block->layout);
     if (status == CAMBER_OK)
         status = camber_label_place_all(&block->layout);
     block->layout.things = NULL;

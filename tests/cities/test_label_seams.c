@@ -7,8 +7,7 @@
  * metatiles, so that the edges of these are inside. The last test counts faults of labels that each tile places for its
  * own view, to see that there are some.
  *
- * CAMBER_SEAM_SQUARES: how many squares of each zoom (2). CAMBER_SEAM_MILLIONS: points of the country (1.5).
- * CAMBER_SEAM_TILES: vector tiles that the style openmaptiles draws (none). */
+ * CAMBER_SEAM_SQUARES: how many squares of each zoom (2). CAMBER_SEAM_MILLIONS: points of the country (1.5). */
 #include "core.h"
 #include "label_seams.h"
 
@@ -291,9 +290,27 @@ static void test_vector_tiles(void **state) {
     char path[1024];
     snprintf(path, sizeof path, "%s/data/osm.mbtiles", data_folder());
     check_map("Santa Cruz", path, "city", 300);
-    const char *tiles = getenv("CAMBER_SEAM_TILES");
-    if (tiles && tiles[0])
-        check_map(tiles, tiles, "openmaptiles", 300);
+}
+
+/* Vector tiles of OpenMapTiles, which tilemaker makes by the profile that Debian's package has. */
+static void test_openmaptiles(void **state) {
+    (void)state;
+    static const char profile[] = "/usr/share/doc/tilemaker/examples/";
+    char folder[64], path[96], command[4096];
+    snprintf(command, sizeof command, "%sconfig-openmaptiles.json", profile);
+    if (access(command, R_OK) != 0 || system("command -v tilemaker > /dev/null") != 0) {
+        puts("# no tiles of OpenMapTiles: tilemaker is not installed (Debian: tilemaker)");
+        return;
+    }
+    folder_make(folder);
+    snprintf(path, sizeof path, "%s/porto.mbtiles", folder);
+    snprintf(command, sizeof command,
+             "tilemaker --input '%s/data/porto_portugal.osm.pbf' --output '%s' --config %sconfig-openmaptiles.json "
+             "--process %sprocess-openmaptiles.lua > '%s/log' 2>&1",
+             data_folder(), path, profile, profile, folder);
+    assert_int_equal(system(command), 0);
+    check_map("Porto's tiles", path, "openmaptiles", 3000);
+    folder_remove(folder);
 }
 
 /* ---- The made-up country ---- */
@@ -320,7 +337,7 @@ static void test_country(void **state) {
 
 /* ---- That there can be faults ---- */
 
-/* What is seen if each tile places the labels of its own view. */
+/* Each tile places the labels of its own view, as servers do that know no more. */
 static void test_views(void **state) {
     (void)state;
     enum { ZOOM = 15 };
@@ -357,8 +374,8 @@ static void test_views(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_porto), cmocka_unit_test(test_new_york),
-                                       cmocka_unit_test(test_vector_tiles),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_porto),        cmocka_unit_test(test_new_york),
+                                       cmocka_unit_test(test_vector_tiles), cmocka_unit_test(test_openmaptiles),
 #ifdef CAMBER_COUNTRY
                                        cmocka_unit_test(test_country),
 #endif

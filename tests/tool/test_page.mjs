@@ -387,6 +387,42 @@ async function checkDarkMap(browser) {
     }
 }
 
+// A map whose light and dark theme are two archives, found in the list of maps. The other map has the same input.
+async function checkMaps(browser) {
+    const [light, dark] = ['light', 'dark'].map(theme => {
+        const archive = join(folder, `pair-${theme}.pmtiles`);
+        execFileSync(tool, ['tiles', '-q', '-f', input, ...DRAWN, '-o', archive, '--theme', theme, '--min-zoom', '12',
+            '--max-zoom', String(ZOOM + 1)]);
+        return archive;
+    });
+    const server = await startServer(`drawn=${input}`, `pair=${light}`, `pair/dark=${dark}`);
+    const context = await browser.newContext({viewport: WIDE, colorScheme: 'light', reducedMotion: 'reduce'});
+    const page = await context.newPage();
+    page.on('console', message => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+    await context.addInitScript(`window.coverWindow = ${coverWindow}`);
+    await page.goto(server.url);
+    check((await page.locator('li a').allTextContents()).length === 2, 'the maps are listed', await page.content());
+    await shoot(page, 'maps');
+    await page.locator('li a[href="pair/"]').click();
+    await page.waitForURL(/\/pair\//);
+    await page.goto(server.url + 'pair/' + hashAt(CENTER));
+    await waitForTheme(page, false);
+    const ground = () => page.evaluate(() => getComputedStyle(document.getElementById('map')).backgroundColor);
+    check(await page.locator('#theme').isVisible(), 'two archives have a button');
+    await page.click('#theme');
+    await waitForTheme(page, true);
+    check(await ground() === 'rgb(16, 20, 28)', 'it shows the dark archive on a dark page', await ground());
+    await shoot(page, 'pair-dark');
+    await page.click('#theme');
+    await waitForTheme(page, false);
+    check(await ground() !== 'rgb(16, 20, 28)', 'and the light one on a light page', await ground());
+    await page.emulateMedia({colorScheme: 'dark'});
+    await waitForTheme(page, true);
+    check(true, "without a choice two archives follow the system's");
+    await context.close();
+    await server.stop();
+}
+
 // The browser reports that nothing answers; so this page's console is not silent.
 async function checkRestart(browser) {
     const server = await startServerAt(await findPort(), input, ...DRAWN);
@@ -508,6 +544,7 @@ try {
     await checkLicence(browser);
     await checkLabels(browser, blank);
     await checkDarkMap(browser);
+    await checkMaps(browser);
     await checkRestart(browser);
     await checkArchive(browser, blank);
     if (help.includes('--edit'))

@@ -487,6 +487,7 @@ def test_renew():
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
     expect(re.search(r"^1 tile removed", said, re.M) and "1 tile of the list is outside" in said, said)
+    expect(re.search(r"^map.mbtiles: \d+ tiles? drawn, now \d+ tiles, zooms \d+ to \d+, [\d.]+ KB, [\d.]+ s$", said, re.M), said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
     expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
@@ -706,7 +707,8 @@ def test_dry_run():
         expect(0.8 < told["bytes"] / made["bytes"] < 1.25, f"{options}: {told} {made}")
         expect(made["tiles"] <= told["tiles"] < 1.5 * made["tiles"], f"{options}: {told} {made}")
     said = camber("tiles", "town.geojson", "-o", "dry.mbtiles", "--max-zoom", 9, "--dry-run").stderr
-    expect(re.search(r"would have \d+ tiles in \d+ metatiles, \d+ points, about \d+\.\d MB$", said, re.M), said)
+    expect(re.search(r"^dry.mbtiles: would have at most \d+ tiles in \d+ metatiles?, [\d,]+ points, about \d+ KB; "
+                     r"dry run, [\d.]+ s$", said, re.M), said)
 
 
 def test_metadata():

@@ -44,6 +44,14 @@ static void add_crowd(town *t, uint32_t seed, double about_x, double about_y, bo
     }
 }
 
+/* Things so far apart that no surroundings of a tile have all of them. */
+static void add_outliers(town *t) {
+    add_point(t, "North", 300.0, 10.0);
+    add_point(t, "South", 500.0, 1010.0);
+    add_point(t, "West", 200.0, 300.0);
+    add_point(t, "East", 800.0, 300.0);
+}
+
 /* ---- The labels of a town ---- */
 
 typedef struct placed_town {
@@ -116,6 +124,7 @@ static void test_tiles(void **state) {
     static const size_t divided[] = {0, 100, 500};
     town *t = open_town(EVERYTHING);
     add_crowd(t, 3, 384.0, 640.0, false);
+    add_outliers(t);
     placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX);
     for (size_t i = 0; i < sizeof divided / sizeof *divided; i++) {
         placed_town *single = place_town(t, TILE_LEVEL, divided[i]);
@@ -131,7 +140,7 @@ static void test_tiles(void **state) {
     close_town(t);
 }
 
-/* ---- What is kept ---- */
+/* ---- Kept blocks ---- */
 
 enum { MOST_LISTED = 4096 };
 
@@ -167,6 +176,7 @@ static void test_chains(void **state) {
                  orders[i]);
         town *t = open_town(layers);
         add_crowd(t, 21, 384.0, 640.0, false);
+        add_outliers(t);
         placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
         const seam_faults f = compare_tiles(all, single, 8, 16);
         assert_true(f.shown > 200 && f.crossing > 100);
@@ -193,6 +203,27 @@ static void test_growth(void **state) {
     const seam_faults f = compare_tiles(all, single, 8, 16);
     assert_int_equal(seam_count(&f), 0);
     assert_int_equal(single->shelf.placed, 2);
+    free_placed(single);
+    free_placed(all);
+    close_town(t);
+}
+
+/* If all things are around a tile, they are placed once for all tiles. */
+static void test_few(void **state) {
+    (void)state;
+    town *t = open_town(EVERYTHING);
+    for (int i = 0; i < 100; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "Name %d", i);
+        add_point(t, name, 350.0 + 7.0 * (i % 10), 610.0 + 6.0 * (i / 10));
+    }
+    placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
+    camber_labels first = draw(single, 12, 20, 1, 1.0);
+    camber_labels_free(&first);
+    const seam_faults f = compare_tiles(all, single, 8, 16);
+    assert_int_equal(single->shelf.placed, 1);
+    assert_true(f.shown > 60);
+    assert_int_equal(seam_count(&f), 0);
     free_placed(single);
     free_placed(all);
     close_town(t);
@@ -297,6 +328,7 @@ static void test_crowded_seam(void **state) {
     (void)state;
     town *t = open_town(EVERYTHING);
     add_crowd(t, 5, 1022.0, 640.0, false);
+    add_outliers(t);
     placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX);
     placed_town *single = place_town(t, TILE_LEVEL, 0);
     const seam_faults east = compare_tiles(all, single, TILES - SHOWN, 16), west = compare_tiles(all, single, 0, 16);
@@ -417,6 +449,7 @@ static void test_list(void **state) {
     const camber_box world = {0.0, 0.0, 1.0, 1.0};
     town *t = open_town(EVERYTHING);
     add_crowd(t, 13, 384.0, 640.0, false);
+    add_outliers(t);
     for (size_t i = 0; i < 3; i++) {
         placed_town *p = place_town(t, TILE_LEVEL, divided[i]);
         lists[i].count = 0;
@@ -503,10 +536,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tiles),        cmocka_unit_test(test_growth),   cmocka_unit_test(test_chains),
-        cmocka_unit_test(test_shelf),        cmocka_unit_test(test_tree),     cmocka_unit_test(test_seam),
-        cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled), cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_too_long),     cmocka_unit_test(test_too_wide), cmocka_unit_test(test_sections),
-        cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
+        cmocka_unit_test(test_tiles),    cmocka_unit_test(test_growth),       cmocka_unit_test(test_chains),
+        cmocka_unit_test(test_few),      cmocka_unit_test(test_shelf),        cmocka_unit_test(test_tree),
+        cmocka_unit_test(test_seam),     cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled),
+        cmocka_unit_test(test_ratio),    cmocka_unit_test(test_too_long),     cmocka_unit_test(test_too_wide),
+        cmocka_unit_test(test_sections), cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -124,9 +124,16 @@ typedef enum camber_log_level {
 /* Receives a message from the library. message is one line without a newline; it is valid only during the call. */
 typedef void camber_log_fn(void *user, camber_log_level level, const char *message);
 
-/* Receives the progress of a long call, on the thread that made the call.
- * fraction is 0 to 1, or negative if the end is not known. */
-typedef void camber_progress_fn(void *user, const char *stage, double fraction);
+/* How far a long call is. */
+typedef struct camber_progress_info {
+    const char *stage;    /* what is being done, such as "drawing tiles" */
+    double fraction;      /* 0 to 1; negative: the end is not known */
+    const char *unit;     /* what is counted, in the plural, such as "tiles". NULL: nothing is counted */
+    uint64_t done, total; /* in units; total 0: not known */
+} camber_progress_info;
+
+/* Receives the progress of a long call, on the thread that made the call. Both are valid only during the call. */
+typedef void camber_progress_fn(void *user, const camber_progress_info *progress);
 
 typedef struct camber_context_desc {
     /* Works like realloc, and frees the block if the size is 0. NULL: the C library's functions. */
@@ -735,6 +742,16 @@ CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const
  * stats and the return values are as for camber_renderer_render. The pixels are undefined on failure. */
 CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
+
+/* Counts lines instead of drawing them: each pixel gets the sum, over all rows, of the area that a row's polylines
+ * cover of it, times the red of the row's paint. Within a row, coverage is accumulated as in an opaque pass, so a line
+ * that crosses itself counts once; to count polylines one by one, give each its own row. Sums are floats, are not
+ * limited, and are added in the same order in every run. The passes have opaque lines, without fills, ramps and images,
+ * and the frame has no background. sums has rows from the top down, with stride_bytes from one row to the next; 0 means
+ * width * 4. It is written in place as by camber_renderer_render_into. Returns the errors of camber_renderer_render,
+ * and CAMBER_ERROR_ARGUMENT (a frame with anything else, or a renderer that draws in GL). */
+CAMBER_API camber_status camber_renderer_sum(camber_renderer *renderer, const camber_frame *frame, float *sums,
+                                             size_t stride_bytes, camber_frame_stats *stats);
 
 /* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
 

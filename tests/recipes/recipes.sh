@@ -173,7 +173,7 @@ CLONE
         echo "python3 - <<'PYTHON'"
         block python
         echo 'PYTHON'
-        echo 'od -An -c -N4 walk.png | grep -q "P   N   G"'
+        echo 'od -An -c -N4 flights.png | grep -q "P   N   G"'
         echo 'port=$((20000 + RANDOM % 12000))'
         echo 'camber serve /checkout/tests/data/santa_cruz/osm.mbtiles --listen 127.0.0.1:$port & server=$!'
         echo 'curl -fsS --retry 100 --retry-delay 1 --retry-all-errors http://127.0.0.1:$port/health && kill -0 $server'
@@ -263,6 +263,7 @@ for system; do
         echo "$system: $recipe: works, $((SECONDS - begun)) s"
     else
         failures=$((failures + 1))
+        awk '/\*\*\*(Failed|Timeout|Exception)/ { found = 1 } /^ *Start +[0-9]+:/ { found = 0 } found' "$run/log" | head -n 400
         tail -n 60 "$run/log"
         echo "FAILED: $system: $recipe, after $((SECONDS - begun)) s"
     fi

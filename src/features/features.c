@@ -5,7 +5,8 @@
  */
 #include "features/features.h"
 #include "features/mercator.h"
-#include "lines/importance.h"
+
+#include "camber_network.h"
 
 #include <limits.h>
 #include <math.h>

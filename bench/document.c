@@ -89,16 +89,18 @@ void bench_document_print(const json_t *document, FILE *to) {
 
 json_t *bench_document_make(bench *b, const char *section) {
     json_t *document = describe(b), *sections = json_object();
+    const char *colon = section ? strchr(section, ':') : NULL;
+    const size_t size = colon ? (size_t)(colon - section) : section ? strlen(section) : 0;
     const double begin = camber_now_ms();
     json_object_set_new(document, "sections", sections);
     print_head(document, stdout);
     if (*bench_peers_missing)
         printf("Not built in: %s\n", bench_peers_missing);
     for (size_t i = 0; bench_sections[i]; i++) {
-        if (section && strcmp(section, bench_sections[i]->name) != 0)
+        if (section && (strncmp(section, bench_sections[i]->name, size) != 0 || bench_sections[i]->name[size]))
             continue;
         const double start = camber_now_ms();
-        json_t *result = bench_sections[i]->measure(b, NULL);
+        json_t *result = bench_sections[i]->measure(b, colon ? colon + 1 : NULL);
         if (!result) {
             fprintf(stderr, "camber_bench: %s could not be measured\n", bench_sections[i]->name);
             json_decref(document);

@@ -15,7 +15,7 @@ typedef struct request {
 
 static int usage(void) {
     fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--keep OUT.json] [--plot OUT.svg]\n"
-                    "                    [--against OLD.json] [--section NAME] [--fly WIDTHxHEIGHT] [--country "
+                    "                    [--against OLD.json] [--section NAME[:ITEM]] [--fly WIDTHxHEIGHT] [--country "
                     "MILLIONS] [--cpu-features avx2]\n"
                     "       camber_bench --readme RESULTS.json... FILE...\n");
     return 2;

@@ -1,5 +1,5 @@
-/* Lines of a city in three classes, as a style of camber's, as GeoJSON that Mapnik keeps in memory, and as shapefiles
- * with an index for renderd, whose Mapnik is older. */
+/* Lines of a city in three classes, if asked with areas and names, as a style of camber's, as GeoJSON that Mapnik keeps
+ * in memory, and as shapefiles with an index for renderd, whose Mapnik is older. */
 #define _XOPEN_SOURCE 700 /* mkdtemp */
 
 #include "pyramid.h"
@@ -30,6 +30,33 @@ static const struct {
 static const double casing_px[ZOOMS] = {0.4, 0.5, 0.6, 0.8, 1.1, 1.4, 1.8};
 enum { CLASSES = sizeof classes / sizeof *classes, LAYERS = 2 * CLASSES, COMMAND_SIZE = 4096 };
 #define BACKGROUND "#f6f2ea"
+
+/* Areas, from the lowest on. values "": any. */
+static const struct {
+    const char *name, *key, *values, *color;
+    int first_zoom;
+} areas[] = {
+    {"fields", "landuse", "'grass','meadow','forest','farmland','cemetery'", "#dfe8cf", FIRST_ZOOM},
+    {"wood", "natural", "'wood','scrub','grassland'", "#cfe0bd", FIRST_ZOOM},
+    {"parks", "leisure", "'park','garden','pitch'", "#cde5bb", FIRST_ZOOM},
+    {"water", "natural", "'water'", "#aaccdd", FIRST_ZOOM},
+    {"buildings", "building", "", "#e0d6c8", 14},
+};
+enum { AREAS = sizeof areas / sizeof *areas };
+
+/* Names, from the lowest on: those of streets along the lines of a class, and of places about points. */
+#define PLACES "'city','town','village','suburb','quarter','neighbourhood','hamlet'"
+#define FONT "Noto Sans Regular"
+static const struct {
+    const char *name; /* of the class */
+    bool along;
+    double size_px;
+    int first_zoom;
+} texts[] = {{"minor", true, 11, 15}, {"middle", true, 11, 13}, {"major", true, 12, 12}, {"places", false, 15, 10}};
+enum { NAMES = sizeof texts / sizeof *texts, SPACING_PX = 250 };
+static const double halo_px = 1.5;
+#define NAME_COLOR "#333333"
+#define HALO_COLOR "#ffffff"
 
 /* Layers from the lowest on: the casings of all classes, then their fills. */
 static double width_at(size_t layer, size_t zoom) {
@@ -68,9 +95,43 @@ static json_t *make_widths(size_t layer) {
     return step;
 }
 
+static json_t *make_match(const char *key, const char *sql) {
+    json_t *values = json_array();
+    add_names(values, sql);
+    if (json_array_size(values) > 0)
+        return json_pack("[s, [s, s], o, b, b]", "match", "get", key, values, 1, 0);
+    json_decref(values);
+    return json_pack("[s, s]", "has", key);
+}
+
+static void add_areas(json_t *layers) {
+    for (size_t i = 0; i < AREAS; i++)
+        json_array_append_new(layers,
+                              json_pack("{s:s, s:s, s:i, s:o, s:{s:s}}", "id", areas[i].name, "type", "fill", "minzoom",
+                                        areas[i].first_zoom - 1, "filter", make_match(areas[i].key, areas[i].values),
+                                        "paint", "fill-color", areas[i].color));
+}
+
+static void add_texts(json_t *layers) {
+    for (size_t i = 0; i < NAMES; i++) {
+        char id[64];
+        snprintf(id, sizeof id, "names of %s", texts[i].name);
+        json_t *layout = json_pack("{s:s, s:[s, s], s:[s], s:f, s:i}", "symbol-placement",
+                                   texts[i].along ? "line" : "point", "text-field", "get", "name", "text-font", FONT,
+                                   "text-size", texts[i].size_px, "symbol-spacing", SPACING_PX);
+        json_array_append_new(layers, json_pack("{s:s, s:s, s:i, s:o, s:o, s:{s:s, s:s, s:f}}", "id", id, "type",
+                                                "symbol", "minzoom", texts[i].first_zoom - 1, "filter",
+                                                texts[i].along ? make_filter(i) : make_match("place", PLACES), "layout",
+                                                layout, "paint", "text-color", NAME_COLOR, "text-halo-color",
+                                                HALO_COLOR, "text-halo-width", halo_px));
+    }
+}
+
 static bool write_style(const bench_pyramid *p) {
     json_t *layers = json_pack("[{s:s, s:s, s:{s:s}}]", "id", "ground", "type", "background", "paint",
                                "background-color", BACKGROUND);
+    if (p->labelled)
+        add_areas(layers);
     for (size_t i = 0; i < LAYERS; i++) {
         char id[64];
         snprintf(id, sizeof id, "%s %s", classes[i % CLASSES].name, i < CLASSES ? "casing" : "fill");
@@ -79,6 +140,8 @@ static bool write_style(const bench_pyramid *p) {
                                         "filter", make_filter(i % CLASSES), "layout", "line-join", "round", "line-cap",
                                         "round", "paint", "line-color", color_of(i), "line-width", make_widths(i)));
     }
+    if (p->labelled)
+        add_texts(layers);
     json_t *style = json_pack("{s:i, s:{}, s:o}", "version", 8, "sources", "layers", layers);
     const bool written = json_dump_file(style, p->style, JSON_INDENT(1)) == 0;
     json_decref(style);
@@ -135,51 +198,114 @@ double bench_pyramid_shell(const bench_pyramid *p, const char *command) {
 
 /* ---- Peers ---- */
 
-/* A rule for each zoom, whose scale lies within its bounds. */
-static void write_rules(size_t layer, FILE *file) {
+/* Begins a rule whose scale lies within the bounds of zooms. */
+static void begin_rule(int first_zoom, int last_zoom, FILE *file) {
     const double world = 559082264.028; /* scale denominator of zoom 0 with tiles of 256 px */
-    for (size_t zoom = 0; zoom < ZOOMS; zoom++) {
-        const double scale = world / (double)(1 << (FIRST_ZOOM + zoom));
+    fprintf(file,
+            "<Rule><MinScaleDenominator>%.0f</MinScaleDenominator><MaxScaleDenominator>%.0f</MaxScaleDenominator>",
+            0.7 * world / (double)(1 << last_zoom), 1.4 * world / (double)(1 << first_zoom));
+}
+
+/* Writes a rule for each zoom. */
+static void write_line_rules(size_t layer, FILE *file) {
+    for (int zoom = 0; zoom < ZOOMS; zoom++) {
+        begin_rule(FIRST_ZOOM + zoom, FIRST_ZOOM + zoom, file);
         fprintf(file,
-                "<Rule><MinScaleDenominator>%.0f</MinScaleDenominator><MaxScaleDenominator>%.0f</MaxScaleDenominator>"
                 "<LineSymbolizer stroke=\"%s\" stroke-width=\"%g\" stroke-linejoin=\"round\" "
                 "stroke-linecap=\"round\"/></Rule>\n",
-                0.7 * scale, 1.4 * scale, color_of(layer), width_at(layer, zoom));
+                color_of(layer), width_at(layer, (size_t)zoom));
     }
 }
 
-static bool write_map(const bench_pyramid *p, const char *type) {
+static void write_area_rule(size_t area, FILE *file) {
+    begin_rule(areas[area].first_zoom, FIRST_ZOOM + ZOOMS - 1, file);
+    fprintf(file, "<PolygonSymbolizer fill=\"%s\"/></Rule>\n", areas[area].color);
+}
+
+static void write_name_rule(size_t name, FILE *file) {
+    begin_rule(texts[name].first_zoom, FIRST_ZOOM + ZOOMS - 1, file);
+    fprintf(file,
+            "<Filter>[name] != ''</Filter><TextSymbolizer face-name=\"" FONT "\" size=\"%g\" fill=\"" NAME_COLOR
+            "\" halo-fill=\"" HALO_COLOR "\" halo-radius=\"%g\" placement=\"%s\" spacing=\"%d\" "
+            "repeat-distance=\"%d\">[name]</TextSymbolizer></Rule>\n",
+            texts[name].size_px, halo_px, texts[name].along ? "line" : "point", SPACING_PX, SPACING_PX / 2);
+}
+
+/* Whether the city has features of the name. */
+static bool has_features(const bench_pyramid *p, const char *name) {
     char path[128];
+    snprintf(path, sizeof path, "%s/%s.shp", p->folder, name);
+    return access(path, R_OK) == 0;
+}
+
+/* Ends a style and adds the layer that it draws. */
+static void write_layer(const bench_pyramid *p, const char *id, const char *type, const char *source, FILE *file) {
+    fprintf(file,
+            "</Style>\n<Layer name=\"%s\" srs=\"epsg:3857\"><StyleName>%s</StyleName><Datasource>"
+            "<Parameter name=\"type\">%s</Parameter><Parameter name=\"file\">%s/%s.%s</Parameter>"
+            "</Datasource></Layer>\n",
+            id, id, type, p->folder, source, strcmp(type, "shape") == 0 ? "shp" : type);
+}
+
+static bool write_map(const bench_pyramid *p, const char *type) {
+    char path[128], id[64];
     snprintf(path, sizeof path, "%s/%s.xml", p->folder, type);
     FILE *file = fopen(path, "w");
     if (!file)
         return false;
-    fprintf(file, "<Map srs=\"epsg:3857\" background-color=\"" BACKGROUND "\">\n");
+    fprintf(file,
+            "<Map srs=\"epsg:3857\" background-color=\"" BACKGROUND "\" font-directory=\"" CAMBER_BENCH_FONTS "\">\n");
+    for (size_t i = 0; i < AREAS && p->labelled; i++) {
+        if (!has_features(p, areas[i].name))
+            continue;
+        fprintf(file, "<Style name=\"%s\">", areas[i].name);
+        write_area_rule(i, file);
+        write_layer(p, areas[i].name, type, areas[i].name, file);
+    }
     for (size_t i = 0; i < LAYERS; i++) {
-        fprintf(file, "<Style name=\"%zu\">", i);
-        write_rules(i, file);
-        fprintf(file,
-                "</Style>\n<Layer name=\"%zu\" srs=\"epsg:3857\"><StyleName>%zu</StyleName><Datasource>"
-                "<Parameter name=\"type\">%s</Parameter><Parameter name=\"file\">%s/%s.%s</Parameter>"
-                "</Datasource></Layer>\n",
-                i, i, type, p->folder, classes[i % CLASSES].name, strcmp(type, "shape") == 0 ? "shp" : type);
+        snprintf(id, sizeof id, "%zu", i);
+        fprintf(file, "<Style name=\"%s\">", id);
+        write_line_rules(i, file);
+        write_layer(p, id, type, classes[i % CLASSES].name, file);
+    }
+    for (size_t i = NAMES; i-- > 0 && p->labelled;) { /* Mapnik places the first layer's names first */
+        if (!has_features(p, texts[i].name))
+            continue;
+        snprintf(id, sizeof id, "names of %s", texts[i].name);
+        fprintf(file, "<Style name=\"%s\">", id);
+        write_name_rule(i, file);
+        write_layer(p, id, type, texts[i].name, file);
     }
     fprintf(file, "</Map>\n");
     return fclose(file) == 0;
 }
 
+/* Writes features of the city as NAME.geojson and, if there are any, NAME.shp. */
+static bool write_features(const bench_pyramid *p, const char *name, const char *layer, const char *where,
+                           const char *fields) {
+    char command[COMMAND_SIZE];
+    snprintf(command, sizeof command,
+             "ogr2ogr -q -f GeoJSON %s.geojson %s %s -where \"%s\" -select %s -t_srs EPSG:3857 "
+             "-lco COORDINATE_PRECISION=2 2>ogr.log && { ! grep -q coordinates %s.geojson || "
+             "{ ogr2ogr -q -lco ENCODING=UTF-8 %s.shp %s.geojson 2>ogr.log && "
+             "{ ! command -v shapeindex || shapeindex %s.shp 2>index.log; } } }",
+             name, p->city, layer, where, fields, name, name, name, name);
+    return bench_pyramid_shell(p, command) >= 0;
+}
+
 bool bench_pyramid_write_maps(const bench_pyramid *p) {
-    for (size_t i = 0; i < CLASSES; i++) {
-        char command[COMMAND_SIZE];
-        snprintf(command, sizeof command,
-                 "ogr2ogr -q -f GeoJSON %s.geojson %s lines -where \"%s\" -select highway -t_srs EPSG:3857 "
-                 "-lco COORDINATE_PRECISION=2 2>ogr.log && ogr2ogr -q %s.shp %s.geojson 2>ogr.log && "
-                 "{ ! command -v shapeindex || shapeindex %s.shp 2>index.log; }",
-                 classes[i].name, p->city, classes[i].where, classes[i].name, classes[i].name, classes[i].name);
-        if (bench_pyramid_shell(p, command) < 0)
-            return false;
+    char where[COMMAND_SIZE / 4];
+    bool written = true;
+    for (size_t i = 0; i < CLASSES && written; i++)
+        written = write_features(p, classes[i].name, "lines", classes[i].where, "highway,name");
+    for (size_t i = 0; i < AREAS && p->labelled && written; i++) {
+        snprintf(where, sizeof where, *areas[i].values ? "%s IN (%s)" : "%s IS NOT NULL", areas[i].key,
+                 areas[i].values);
+        written = write_features(p, areas[i].name, "multipolygons", where, areas[i].key);
     }
-    return write_map(p, "geojson") && write_map(p, "shape");
+    if (p->labelled && written)
+        written = write_features(p, "places", "points", "place IN (" PLACES ")", "place,name");
+    return written && write_map(p, "geojson") && write_map(p, "shape");
 }
 
 static json_t *run_peer(const char *const *arguments, const char *input) {

@@ -8,6 +8,7 @@
 typedef struct bench_pyramid {
     char folder[64], city[1024], style[128];
     int min_zoom, max_zoom;
+    bool labelled; /* areas below the lines and names above them are drawn, too */
     double box[4]; /* west, south, east, north of what is drawn, in degrees */
 } bench_pyramid;
 
@@ -22,7 +23,7 @@ json_t *bench_pyramid_draw(const bench *b, const bench_pyramid *pyramid, const c
 /* Runs a shell command in the folder. Gives its milliseconds; below 0: it failed. */
 double bench_pyramid_shell(const bench_pyramid *pyramid, const char *command);
 
-/* The same lines, widths and colours in the peers' forms, by ogr2ogr. false: it is not here, or fails. */
+/* The same lines, areas, names, widths and colours in the peers' forms, by ogr2ogr. false: it is not here, or fails. */
 bool bench_pyramid_write_maps(const bench_pyramid *pyramid);
 /* These print a line of JSON, of npm's Mapnik (peers/mapnik_tiles.mjs) and of renderd. NULL: not here. */
 json_t *bench_pyramid_mapnik(const bench_pyramid *pyramid, const char *format);

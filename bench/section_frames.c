@@ -180,12 +180,12 @@ static void print(const json_t *result, FILE *to) {
     fprintf(to,
             "Drawing in GL, %d x %d px, round joins, butt caps, black on white, ms. draw: clear, draw, finish; frame: "
             "from lines\nin memory to pixels in memory; .1: what lies closer than %g px is left out; united: draw .1, "
-            "all lines as one area.\nPeers: from lines to pixels in memory, and how many times camber's draw .1 fits "
-            "into that.\n\n",
+            "all lines as one area.\nPeers: from lines to pixels in memory, and that time relative to camber's draw "
+            ".1.\n\n",
             BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX);
     print_table(result, in_gl, SIMPLE_DRAW, to);
-    fprintf(to, "\nDrawing in OpenCL, the same lines: cl, whole frames; frame: GL's. Peers: how many times cl, with "
-                "every point drawn, fits into theirs.\n\n");
+    fprintf(to, "\nDrawing in OpenCL, the same lines: cl, whole frames; frame: GL's. Peers: their time relative to cl "
+                "with every point drawn.\n\n");
     print_table(result, in_cl, CL_FRAME, to);
 }
 

@@ -1,8 +1,10 @@
 /* camber serve under load beside Debian's mod_tile and renderd, which draw the same lines in the same widths and
- * colours; what it has in memory after many requests, and how soon it answers. peers/serve_load.py drives all of it. */
+ * colours, without labels and with them, and the same areas; what it has in memory after many requests, and how soon it
+ * answers. peers/serve_load.py drives all of it. */
 #include "bench.h"
 #include "pyramid.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,56 +31,65 @@ static double number_of(const json_t *row, const char *way, const char *when, co
     return bench_number(json_object_get(json_object_get(row, way), when), key);
 }
 
-static void add_figure(json_t *result, const char *what, const char *against, double value, bool less) {
-    bench_result_add_figure(result, &(bench_figure){"porto", what, against, value, less});
+static void add_figure(json_t *result, const json_t *row, const char *what, const char *against, double value,
+                       bool less) {
+    if (isfinite(value) && value > 0)
+        bench_result_add_figure(result, &(bench_figure){bench_text(row, "key"), what, against, value, less});
 }
 
-static void add_row(json_t *result, json_t *row) {
+static void add_row(json_t *result, json_t *row, const char *key, const char *name) {
     const json_t *memory = json_object_get(row, "memory");
-    json_object_set_new(row, "key", json_string("porto"));
-    json_object_set_new(row, "name", json_string("Porto"));
+    json_object_set_new(row, "key", json_string(key));
+    json_object_set_new(row, "name", json_string(name));
     for (size_t i = 0; i < sizeof news / sizeof *news; i++) {
         const double renderd = number_of(row, "renderd", news[i].when, "a_second");
-        add_figure(result, news[i].name, "mod_tile and renderd",
+        add_figure(result, row, news[i].name, "mod_tile and renderd",
                    number_of(row, "camber", news[i].when, "a_second") / renderd, false);
-        add_figure(result, news[i].name_behind, "renderd", number_of(row, "behind", news[i].when, "a_second") / renderd,
-                   false);
+        add_figure(result, row, news[i].name_behind, "renderd",
+                   number_of(row, "behind", news[i].when, "a_second") / renderd, false);
     }
-    add_figure(result, "tiles from memory", "mod_tile",
+    add_figure(result, row, "tiles from memory", "mod_tile",
                number_of(row, "camber", "cached", "a_second") / number_of(row, "renderd", "cached", "a_second"), false);
-    add_figure(result, "memory after 10^6 requests", "10^4",
+    add_figure(result, row, "memory after 10^6 requests", "10^4",
                bench_number(memory, "many_bytes") / bench_number(memory, "few_bytes"), true);
     bench_result_add_row(result, row);
 }
 
-static json_t *measure(bench *b, const char *only) {
-    json_t *result = bench_result_new();
-    bench_pyramid p = {.min_zoom = 12, .max_zoom = 16};
-    if ((only && strcmp(only, "porto") != 0) || !bench_scene_path(b, "porto", p.city, sizeof p.city) ||
-        !bench_pyramid_open(&p))
-        return result;
+/* what: the measurements, as peers/serve_load.py names them. */
+static void measure_map(bench *b, json_t *result, bool labelled, const char *what) {
+    bench_pyramid p = {.min_zoom = 12, .max_zoom = 16, .labelled = labelled};
+    if (!bench_scene_path(b, "porto", p.city, sizeof p.city) || !bench_pyramid_open(&p))
+        return;
     if (b->size != BENCH_TINY)
         (void)bench_pyramid_write_maps(&p); /* else there is no peer */
-    json_t *row = load(b, &p, b->size == BENCH_TINY ? "camber" : "camber,behind,renderd,memory,start");
+    json_t *row = load(b, &p, b->size == BENCH_TINY ? "camber" : what);
     if (row)
-        add_row(result, row);
+        add_row(result, row, labelled ? "porto_labels" : "porto", labelled ? "Porto with labels" : "Porto");
     bench_pyramid_close(&p);
+}
+
+static json_t *measure(bench *b, const char *only) {
+    json_t *result = bench_result_new();
+    if (!only || strcmp(only, "porto") == 0)
+        measure_map(b, result, false, "camber,behind,renderd,memory,start");
+    if (!only || strcmp(only, "porto_labels") == 0)
+        measure_map(b, result, true, "camber,renderd");
     return result;
 }
 
 static void print_load(const json_t *row, const char *way, const char *when, const char *name, FILE *to) {
     if (number_of(row, way, when, "a_second") > 0)
-        fprintf(to, "  %-40s %7.0f a second, %7.2f ms in the middle, %7.2f ms at 99 %%, %.0f failed\n", name,
-                number_of(row, way, when, "a_second"), number_of(row, way, when, "p50_ms"),
-                number_of(row, way, when, "p99_ms"), number_of(row, way, when, "failed"));
+        fprintf(to,
+                "  %-40s %7.0f a second, %7.2f ms in the middle, %7.2f ms at 99 %%, %.2f ms of processors, %.0f "
+                "failed\n",
+                name, number_of(row, way, when, "a_second"), number_of(row, way, when, "p50_ms"),
+                number_of(row, way, when, "p99_ms"), number_of(row, way, when, "cpu_ms"),
+                number_of(row, way, when, "failed"));
 }
 
-static void print(const json_t *result, FILE *to) {
-    const json_t *row = json_array_get(bench_result_rows(result), 0);
-    if (!row)
-        return;
+static void print_row(const json_t *row, FILE *to) {
     const json_t *memory = json_object_get(row, "memory"), *start = json_object_get(row, "start");
-    fprintf(to, "\nTiles of Porto over HTTP, by wrk -t2 -c16 on the same processors\n");
+    fprintf(to, "\nTiles of %s over HTTP, by wrk -t2 -c16 on the same processors\n", bench_text(row, "name"));
     for (size_t i = 0; i < sizeof news / sizeof *news; i++) {
         char names[3][64];
         snprintf(names[0], sizeof names[0], "camber, %s", news[i].name);
@@ -98,6 +109,12 @@ static void print(const json_t *result, FILE *to) {
     if (start)
         fprintf(to, "  the first tile of New York is there %.0f ms after the start, %.0f ms at most\n",
                 bench_number(start, "median_ms"), bench_number(start, "most_ms"));
+}
+
+static void print(const json_t *result, FILE *to) {
+    size_t i;
+    const json_t *row;
+    json_array_foreach(bench_result_rows(result), i, row) print_row(row, to);
 }
 
 const bench_section bench_section_serve = {"serve", measure, print};

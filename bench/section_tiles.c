@@ -1,7 +1,7 @@
-/* Pyramids of tiles: cities beside Mapnik and renderd, which draw the same lines in the same widths and colours; and
- * shards of a made-up country. For all of them the clock starts when the map is loaded, and stops when the last tile is
- * on the disk; camber's whole process is told as well. Shards are whole processes. Tiles are those that camber's
- * archive has. */
+/* Pyramids of tiles: cities beside Mapnik and renderd, which draw the same lines in the same widths and colours, and
+ * one with the same areas and names, too; a made-up country with labels and without; and shards of one. For all of them
+ * the clock starts when the map is loaded, and stops when the last tile is on the disk; camber's whole process is told
+ * as well. Shards are whole processes. Tiles are those that camber's archive has. */
 #include "bench.h"
 #include "pyramid.h"
 
@@ -159,6 +159,148 @@ static bool measure_city(bench *b, const char *key, const char *name, json_t *re
     return done;
 }
 
+/* ---- Labels ---- */
+
+/* Tiles with labels. cpu_ms: of all processors, which is what counts if others use them. */
+typedef enum label_way {
+    LABELS_CITY,
+    LABELS_CITY_BARE,
+    LABELS_SAME,
+    LABELS_SAME_BARE,
+    LABELS_MAPNIK,
+    LABELS_RENDERD,
+    LABEL_WAYS,
+} label_way;
+
+static const struct {
+    const char *key, *name;
+} label_ways[LABEL_WAYS] = {
+    [LABELS_CITY] = {"city", "camber, style city"},       [LABELS_CITY_BARE] = {"city_bare", "the same without labels"},
+    [LABELS_SAME] = {"same", "camber, the peers' style"}, [LABELS_SAME_BARE] = {"same_bare", "the same without labels"},
+    [LABELS_MAPNIK] = {"mapnik", "Mapnik, png32:z=1"},    [LABELS_RENDERD] = {"renderd", "renderd, png32:z=1"},
+};
+
+typedef struct label_times {
+    bench_series ms[LABEL_WAYS], cpu_ms[LABEL_WAYS];
+    double tiles[LABEL_WAYS];
+} label_times;
+
+static json_t *run_labelled(const bench *b, bench_pyramid *p, label_way by) {
+    static const char *const with[] = {"--threads", "2", NULL}, *const without[] = {"--threads", "2", "--no-labels",
+                                                                                    NULL};
+    if (by == LABELS_MAPNIK)
+        return bench_pyramid_mapnik(p, "png32:z=1");
+    if (by == LABELS_RENDERD)
+        return bench_pyramid_renderd(p, "png32:z=1");
+    bench_pyramid own = *p;
+    if (by <= LABELS_CITY_BARE)
+        snprintf(own.style, sizeof own.style, "city");
+    json_t *said = bench_pyramid_draw(b, &own, "png.pmtiles", by == LABELS_CITY || by == LABELS_SAME ? with : without);
+    if (said) /* as peers measure it: from the loaded map on */
+        json_object_set_new(said, "ms", json_real(bench_number(said, "wall_ms") - bench_number(said, "load_ms")));
+    return said;
+}
+
+static bool measure_label_ways(bench *b, bench_pyramid *p, label_times *times, const label_way *of, size_t count) {
+    const size_t runs = b->runs < TILES_RUNS_MAX ? b->runs : TILES_RUNS_MAX;
+    for (size_t run = 0; run < runs; run++)
+        for (size_t i = 0; i < count; i++) {
+            if (of[i] >= LABELS_MAPNIK && run > 0)
+                continue;
+            json_t *said = run_labelled(b, p, of[i]);
+            if (!said && of[i] < LABELS_MAPNIK)
+                return false;
+            if (!said)
+                continue;
+            bench_series_add(times->ms + of[i], bench_number(said, "ms"));
+            bench_series_add(times->cpu_ms + of[i], bench_number(said, "cpu_ms"));
+            times->tiles[of[i]] = bench_number(said, of[i] == LABELS_RENDERD ? "metatiles" : "tiles");
+            json_decref(said);
+        }
+    times->tiles[LABELS_RENDERD] = times->tiles[LABELS_SAME];
+    return true;
+}
+
+static void add_labelled(const char *key, const char *name, const bench_pyramid *p, const label_times *times,
+                         json_t *result) {
+    json_t *row = json_pack("{s:s, s:s, s:i, s:i, s:b}", "key", key, "name", name, "min_zoom", p->min_zoom, "max_zoom",
+                            p->max_zoom, "labelled", 1);
+    double ms[LABEL_WAYS];
+    for (int by = 0; by < LABEL_WAYS; by++) {
+        char field[64];
+        ms[by] = bench_series_median(times->ms + by);
+        if (ms[by] <= 0)
+            continue;
+        snprintf(field, sizeof field, "%s_ms", label_ways[by].key);
+        json_object_set_new(row, field, bench_ms(ms[by]));
+        snprintf(field, sizeof field, "%s_cpu_ms", label_ways[by].key);
+        json_object_set_new(row, field, bench_ms(bench_series_median(times->cpu_ms + by)));
+        snprintf(field, sizeof field, "%s_tiles", label_ways[by].key);
+        json_object_set_new(row, field, json_real(times->tiles[by]));
+    }
+    bench_result_add_row(result, row);
+    bench_result_add_figure(result, &(bench_figure){key, "tiles with labels, style city", "without",
+                                                    ms[LABELS_CITY] / ms[LABELS_CITY_BARE], true});
+    if (ms[LABELS_MAPNIK] > 0)
+        add_ratio(result, key, "tiles with labels", "Mapnik, png32:z=1", ms[LABELS_MAPNIK] / ms[LABELS_SAME]);
+    if (ms[LABELS_RENDERD] > 0)
+        add_ratio(result, key, "tiles with labels", "renderd", ms[LABELS_RENDERD] / ms[LABELS_SAME]);
+}
+
+/* At zooms 12 to 16 streets have names. Porto's file has next to no areas. */
+static bool measure_labelled_city(bench *b, const char *scene, const char *key, const char *name, json_t *result) {
+    static const label_way all[] = {LABELS_CITY,      LABELS_CITY_BARE, LABELS_SAME,
+                                    LABELS_SAME_BARE, LABELS_MAPNIK,    LABELS_RENDERD};
+    static const int deepest[] = {16, 14, 12};
+    bench_pyramid p = {.min_zoom = 12, .max_zoom = deepest[b->size], .labelled = true};
+    label_times times = {.tiles = {0}};
+    if (!bench_scene_path(b, scene, p.city, sizeof p.city))
+        return true;
+    json_t *said = bench_pyramid_open(&p) ? run_labelled(b, &p, LABELS_SAME) : NULL; /* the file comes from the disk */
+    bool done = said && read_box(b, &p);
+    json_decref(said);
+    const bool peers = done && b->size != BENCH_TINY && bench_pyramid_write_maps(&p);
+    done = done && measure_label_ways(b, &p, &times, all, peers ? LABEL_WAYS : LABELS_MAPNIK);
+    if (done)
+        add_labelled(key, name, &p, &times, result);
+    bench_pyramid_close(&p);
+    return done;
+}
+
+static bool measure_labelled_country(bench *b, json_t *result) {
+    static const label_way all[] = {LABELS_CITY, LABELS_CITY_BARE};
+    static const double usual_millions[] = {10, 1, 0.05};
+    static const int deepest[] = {14, 12, 9};
+    bench_pyramid p = {.min_zoom = 0, .max_zoom = deepest[b->size]};
+    label_times times = {.tiles = {0}};
+    const double millions = b->country_millions > 0 ? b->country_millions : usual_millions[b->size];
+    if (!bench_country_make(b, millions, ".osm.pbf", p.city, sizeof p.city))
+        return true;
+    const bool done = bench_pyramid_open(&p) && measure_label_ways(b, &p, &times, all, sizeof all / sizeof *all);
+    if (done)
+        add_labelled("country_labels", "a made-up country with labels", &p, &times, result);
+    bench_pyramid_close(&p);
+    remove(p.city);
+    return done;
+}
+
+static void print_labelled(const json_t *row, FILE *to) {
+    fprintf(to, "%s, zooms %.0f to %.0f\n", bench_text(row, "name"), bench_number(row, "min_zoom"),
+            bench_number(row, "max_zoom"));
+    for (int by = 0; by < LABEL_WAYS; by++) {
+        char field[64];
+        snprintf(field, sizeof field, "%s_ms", label_ways[by].key);
+        const double ms = bench_number(row, field);
+        snprintf(field, sizeof field, "%s_cpu_ms", label_ways[by].key);
+        const double cpu_ms = bench_number(row, field);
+        snprintf(field, sizeof field, "%s_tiles", label_ways[by].key);
+        const double tiles = bench_number(row, field);
+        if (ms > 0)
+            fprintf(to, "  %-26s %7.0f tiles, %7.0f tiles/s, %.2f ms of a processor's time a tile\n",
+                    label_ways[by].name, tiles, 1e3 * tiles / ms, cpu_ms / tiles);
+    }
+}
+
 /* ---- Shards ---- */
 
 typedef struct shard_times {
@@ -273,6 +415,12 @@ static json_t *measure(bench *b, const char *only) {
     for (size_t i = 0; i < (b->size == BENCH_TINY ? 1 : 2) && done; i++)
         if (!only || strcmp(only, cities[i][0]) == 0)
             done = measure_city(b, cities[i][0], cities[i][1], result);
+    if (done && (!only || strcmp(only, "porto_labels") == 0))
+        done = measure_labelled_city(b, "porto", "porto_labels", "Porto with labels", result);
+    if (done && b->size != BENCH_TINY && (!only || strcmp(only, "nyc_labels") == 0))
+        done = measure_labelled_city(b, "nyc", "nyc_labels", "New York with areas and labels", result);
+    if (done && (!only || strcmp(only, "country_labels") == 0))
+        done = measure_labelled_country(b, result);
     if (done && (!only || strcmp(only, "country") == 0))
         done = measure_country(b, result);
     if (done)
@@ -306,6 +454,10 @@ static void print(const json_t *result, FILE *to) {
             "\nPyramids of tiles of 256 px from a loaded map, on two threads; peers draw the same lines, widths and "
             "colours\n");
     json_array_foreach(bench_result_rows(result), i, row) {
+        if (json_is_true(json_object_get(row, "labelled"))) {
+            print_labelled(row, to);
+            continue;
+        }
         if (bench_number(row, "shards") == 0) {
             print_city(row, to);
             continue;

@@ -124,9 +124,16 @@ typedef enum camber_log_level {
 /* Receives a message from the library. message is one line without a newline; it is valid only during the call. */
 typedef void camber_log_fn(void *user, camber_log_level level, const char *message);
 
-/* Receives the progress of a long call, on the thread that made the call.
- * fraction is 0 to 1, or negative if the end is not known. */
-typedef void camber_progress_fn(void *user, const char *stage, double fraction);
+/* How far a long call is. */
+typedef struct camber_progress_info {
+    const char *stage;    /* what is being done, such as "drawing tiles" */
+    double fraction;      /* 0 to 1; negative: the end is not known */
+    const char *unit;     /* what is counted, in the plural, such as "tiles". NULL: nothing is counted */
+    uint64_t done, total; /* in units; total 0: not known */
+} camber_progress_info;
+
+/* Receives the progress of a long call, on the thread that made the call. Both are valid only during the call. */
+typedef void camber_progress_fn(void *user, const camber_progress_info *progress);
 
 typedef struct camber_context_desc {
     /* Works like realloc, and frees the block if the size is 0. NULL: the C library's functions. */

@@ -82,7 +82,8 @@ typedef struct camber_tiles_finding {
 typedef struct camber_tiles_findings {
     const camber_tiles_finding *findings;
     size_t count;
-    size_t left_out; /* findings that are not listed, because each kind is listed only up to a limit */
+    size_t left_out;            /* findings that are not listed, because each kind is listed only up to a limit */
+    uint64_t tiles, size_bytes; /* of the archive, as far as it could be read */
 } camber_tiles_findings;
 
 /* Checks everything that an archive claims: its header, counts, zooms, bounds, order and sections, its tables, indices

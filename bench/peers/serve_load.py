@@ -75,14 +75,16 @@ def ask(port, path):
     return answer, body
 
 
-def load(port, paths, seconds, how="again", etag=None):
-    """What wrk counted. how: once, each path and no more, or again and again."""
+def load(port, paths, seconds, how="again", etag=None, servers=()):
+    """What wrk counted, and the processors' time of the servers. how: once, each path and no more, or again and again."""
+    used = sum(server.cpu_ms() for server in servers)
     done = subprocess.run(["wrk", "-t2", "-c16", f"-d{seconds}s", "--timeout", "60s", "-s",
                            os.path.join(HERE, "serve_paths.lua"), f"http://127.0.0.1:{port}", "--", paths, how,
                            *([etag] if etag else [])], capture_output=True, text=True, check=True)
     said = json.loads(done.stdout.splitlines()[-1])
     return {"a_second": said["requests"] / said["seconds"], "p50_ms": said["p50_ms"], "p99_ms": said["p99_ms"],
-            "requests": said["requests"], "failed": said["failed"]}
+            "requests": said["requests"], "failed": said["failed"],
+            "cpu_ms": (sum(server.cpu_ms() for server in servers) - used) / max(said["requests"], 1)}
 
 
 class Process:
@@ -106,6 +108,16 @@ class Process:
             self.process.kill()
             self.process.wait()
 
+    def cpu_ms(self):
+        """Of the process and its children, Apache's workers among them."""
+        with open(f"/proc/{self.process.pid}/task/{self.process.pid}/children", encoding="ascii") as file:
+            processes = [str(self.process.pid), *file.read().split()]
+        ticks = 0
+        for process in processes:
+            with open(f"/proc/{process}/stat", encoding="ascii") as file:
+                ticks += sum(map(int, file.read().rsplit(")", 1)[1].split()[11:13]))
+        return 1e3 * ticks / os.sysconf("SC_CLK_TCK")
+
     def resident(self):
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
@@ -125,10 +137,10 @@ def start_camber(*options, city=CITY, ready="/health"):
 
 def measure_camber(paths):
     port, server = start_camber("--style", STYLE)
-    made = {"first": load(port, write_paths("new.txt", paths[:FIRST_TILES]), SECONDS, "once")}
+    made = {"first": load(port, write_paths("new.txt", paths[:FIRST_TILES]), SECONDS, "once", None, [server])}
     server.stop()
     port, server = start_camber("--style", STYLE)
-    made["all"] = load(port, write_paths("new.txt", paths), SECONDS, "once")
+    made["all"] = load(port, write_paths("new.txt", paths), SECONDS, "once", None, [server])
     some = paths[:CACHED_TILES]
     for path in some:
         ask(port, path)
@@ -202,6 +214,9 @@ class ModTile:
             self.behind = start_renderd(self.metatiles)
         self.port, self.apache = start_apache(self.metatiles)
 
+    def processes(self):
+        return self.behind, self.apache
+
     def stop(self):
         self.apache.stop()
         self.behind.stop()
@@ -213,10 +228,11 @@ class ModTile:
 def measure_mod_tile(paths, by_camber):
     """The same paths, in the same order, by mod_tile."""
     server = ModTile(by_camber)
-    made = {"first": load(server.port, write_paths("new.txt", paths[:FIRST_TILES], "/t"), SECONDS, "once")}
+    made = {"first": load(server.port, write_paths("new.txt", paths[:FIRST_TILES], "/t"), SECONDS, "once", None,
+                          server.processes())}
     server.stop()
     server = ModTile(by_camber)
-    made["all"] = load(server.port, write_paths("new.txt", paths, "/t"), SECONDS, "once")
+    made["all"] = load(server.port, write_paths("new.txt", paths, "/t"), SECONDS, "once", None, server.processes())
     some = [path for path in paths[:CACHED_TILES] if ask(server.port, "/t" + path)[0].status == 200]
     if not by_camber and some:
         made["cached"] = load(server.port, write_paths("cached.txt", some, "/t"), SECONDS)

@@ -178,7 +178,8 @@ class Map:
         base = ffi.NULL if self._base is None else self._base
         if self._labels:
             folders = [ffi.new("char[]", folder) for folder in self._fonts]
-            fonts = ffi.new("camber_fonts_desc *", {"folders": ffi.new("char *[]", folders), "folder_count": len(folders)})
+            pointers = ffi.new("char *[]", folders)  # which a structure does not keep alive
+            fonts = ffi.new("camber_fonts_desc *", {"folders": pointers, "folder_count": len(folders)})
             core.check(lib.camber_features_read_fonts(features, fonts, base))
         if self._inputs and once:
             desc = ffi.new("camber_scene_desc *", {"view": view, "simplify_px": SIMPLIFY_PX})

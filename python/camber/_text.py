@@ -24,7 +24,8 @@ def open_fonts(core, context, folders):
     folders = tuple(as_path(folder) for folder in folders)
     if folders not in context._fonts:
         names = [ffi.new("char[]", folder) for folder in folders]
-        desc = ffi.new("camber_fonts_desc *", {"folders": ffi.new("char *[]", names), "folder_count": len(names)})
+        pointers = ffi.new("char *[]", names)  # which a structure does not keep alive
+        desc = ffi.new("camber_fonts_desc *", {"folders": pointers, "folder_count": len(names)})
         context._fonts[folders] = core.make(lib.camber_fonts_create, core.pointer, desc)
     return context._fonts[folders]
 

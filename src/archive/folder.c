@@ -67,7 +67,7 @@ static camber_status write_tiles(const camber_archive_plan *plan, camber_bytes *
         status = camber_contents_read(plan->contents, item->store, item->offset, bytes->data, item->size_bytes);
         for (uint64_t k = 0; k < run->length && status == CAMBER_OK; k++)
             status = write_tile(plan, run->number + k, bytes);
-        camber_progress(plan->context, "writing tiles", (double)i / (double)plan->run_count);
+        camber_progress_count(plan->context, "writing tiles", "entries", i, plan->run_count);
     }
     return status;
 }

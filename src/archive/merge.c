@@ -174,7 +174,7 @@ static camber_status write(merging *m, camber_archive_format format) {
     if (status == CAMBER_OK && m->desc->begun)
         m->desc->begun(m->desc->user);
     for (size_t i = 0; i < m->desc->part_count && status == CAMBER_OK; i++) {
-        camber_progress(m->context, "reading parts", (double)i / (double)m->desc->part_count);
+        camber_progress_count(m->context, "reading parts", "parts", i, m->desc->part_count);
         status = camber_archive_writer_take(writer, m->parts[i]);
     }
     if (status == CAMBER_OK)

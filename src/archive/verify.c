@@ -153,7 +153,9 @@ camber_status camber_tiles_verify(camber_context *context, const char *path, cam
     made->context = context;
     camber_budget_begin(context);
     const camber_status status = run(&v, path);
-    made->findings = (camber_tiles_findings){v.findings, v.count, v.left_out};
+    made->findings = (camber_tiles_findings){v.findings, v.count, v.left_out, v.tally.tiles, 0};
+    for (int zoom = 0; zoom <= CAMBER_LARGEST_TILE_ZOOM; zoom++)
+        made->findings.size_bytes += v.tally.zoom_bytes[zoom];
     camber_tally_free(&v.tally);
     camber_free(context, v.checksum.hashes);
     camber_bytes_free(&v.bytes);

@@ -165,7 +165,7 @@ static camber_status check_contents(camber_verify *v) {
             camber_verify_tell(v, CAMBER_VERIFY_BYTES, true, "tile %s: %s", name, why);
         else if (status == CAMBER_OK && place->size_bytes)
             status = camber_verify_bytes(v, name, &v->bytes);
-        camber_progress(v->context, "verifying", (double)i / (double)v->tally.place_count);
+        camber_progress_count(v->context, "verifying", "tiles", i + 1, v->tally.place_count);
     }
     return status;
 }

@@ -28,6 +28,7 @@ static camber_status take_tile(void *user, const camber_archive_tile *tile) {
         return CAMBER_OK;
     }
     camber_verify_bounds(v, tile);
+    camber_progress_count(v->context, "verifying", "tiles", v->tally.tiles, 0);
     const char *why;
     camber_status status = camber_archive_read(v->archive, tile, &v->bytes, &why);
     if (status == CAMBER_OK)

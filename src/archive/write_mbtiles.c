@@ -178,7 +178,7 @@ static camber_status put_tiles(writing *w) {
             status = put_image(w, run->content);
         for (uint64_t k = 0; k < run->length && status == CAMBER_OK; k++)
             status = put_tile(w, run->number + k, run->content);
-        camber_progress(plan->context, "writing tiles", (double)i / (double)plan->run_count);
+        camber_progress_count(plan->context, "writing tiles", "entries", i, plan->run_count);
     }
     return status;
 }

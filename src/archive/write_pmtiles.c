@@ -229,7 +229,7 @@ static camber_status copy_tiles(const camber_archive_plan *plan, const packed *p
             size += next->size_bytes;
         }
         status = copy_range(&c, first->store, first->offset, size);
-        camber_progress(plan->context, "copying tiles", (double)i / (double)p->content_count);
+        camber_progress_count(plan->context, "copying tiles", "tiles", i, p->content_count);
     }
     if (status == CAMBER_OK)
         status = drain(&c);

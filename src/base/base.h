@@ -74,6 +74,9 @@ typedef struct camber_saved_log {
 void camber_log_demote_errors(camber_context *context, camber_saved_log *kept);
 void camber_log_restore(camber_context *context, const camber_saved_log *kept);
 void camber_progress(camber_context *context, const char *stage, double fraction);
+/* The same with a count of units; if total is not 0, the fraction is done / total. */
+void camber_progress_count(camber_context *context, const char *stage, const char *unit, uint64_t done, uint64_t total);
+void camber_progress_tell(camber_context *context, const camber_progress_info *progress);
 
 /* Says who named a file: the caller, or a style, whose files must be inside the context's root. */
 typedef enum camber_file_naming {

@@ -50,7 +50,20 @@ void camber_log_restore(camber_context *context, const camber_saved_log *kept) {
     context->desc.log_user = kept->user;
 }
 
-void camber_progress(camber_context *context, const char *stage, double fraction) {
+void camber_progress_tell(camber_context *context, const camber_progress_info *progress) {
     if (context->desc.progress)
-        context->desc.progress(context->desc.progress_user, stage, fraction);
+        context->desc.progress(context->desc.progress_user, progress);
+}
+
+void camber_progress(camber_context *context, const char *stage, double fraction) {
+    camber_progress_tell(context, &(camber_progress_info){.stage = stage, .fraction = fraction});
+}
+
+void camber_progress_count(camber_context *context, const char *stage, const char *unit, uint64_t done,
+                           uint64_t total) {
+    camber_progress_tell(context, &(camber_progress_info){.stage = stage,
+                                                          .fraction = total ? (double)done / (double)total : -1.0,
+                                                          .unit = unit,
+                                                          .done = done,
+                                                          .total = total});
 }

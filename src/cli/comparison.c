@@ -61,8 +61,9 @@ typedef struct position {
 
 static void tell(const position *p, double fraction) {
     camber_comparison *c = p->comparison;
-    camber_report_progress(c->session->report, "comparing",
-                           ((double)p->network + fraction) / (double)c->networks.count);
+    const double done = ((double)p->network + fraction) / (double)c->networks.count;
+    camber_report_progress(c->session->report,
+                           &(camber_progress_info){"comparing", done, "networks", p->network, c->networks.count});
 }
 
 static void tell_truth(void *user, double fraction) {

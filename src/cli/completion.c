@@ -1,11 +1,12 @@
-/* Prints the completion scripts for bash and zsh from the table of options, so that they offer exactly what the parser
- * accepts.
+/* Prints the completion scripts for bash, zsh and fish from the table of options, so that they offer exactly what the
+ * parser accepts.
  *
  * The script for bash consists of three tables and a function. The tables are shell functions: the options of a verb,
  * the values of an option, and the operands of a verb. The function determines what kind of word is at the cursor, and
  * looks up the candidates in the tables. In the tables, the words @files and @folders stand for paths.
  *
- * The script for zsh has one call of _arguments for each verb; zsh does the rest. */
+ * The script for zsh has one call of _arguments for each verb; zsh does the rest. The script for fish has one call of
+ * complete for each option of each verb. */
 #include "cli/completion.h"
 
 #include "cli/options_table.h"
@@ -254,9 +255,109 @@ static void print_zsh(FILE *file) {
           file);
 }
 
+/* ---- fish ---- */
+
+/* In single quotes fish reads a backslash only before another or a quote. */
+static void print_quoted(const char *text, FILE *file) {
+    fputc('\'', file);
+    for (; *text; text++) {
+        if (*text == '\'' || *text == '\\')
+            fputc('\\', file);
+        fputc(*text, file);
+    }
+    fputc('\'', file);
+}
+
+/* Prints how fish completes an option's value: -x takes only the words of -a, -r also files. */
+static void print_fish_value(const camber_option_spec *spec, camber_verb verb, FILE *file) {
+    switch (spec->kind) {
+    case CAMBER_OPTION_FILE: fputs(" -r -F", file); break;
+    case CAMBER_OPTION_FOLDER:
+    case CAMBER_OPTION_FONTS: fputs(" -x -a '(__fish_complete_directories)'", file); break;
+    case CAMBER_OPTION_STYLE:
+        fputs(" -r -F -a '", file);
+        print_styles(file);
+        fputc('\'', file);
+        break;
+    case CAMBER_OPTION_DEVICE: fputs(" -x -a 'cpu gpu'", file); break;
+    case CAMBER_OPTION_CHOICE:
+        fputs(" -x -a '", file);
+        print_choice(camber_option_argument(spec, verb), file);
+        fputc('\'', file);
+        break;
+    default: fputs(" -x", file); break;
+    }
+}
+
+/* when: the condition under which fish offers them. */
+static void print_fish_options(const char *when, camber_verb verb, FILE *file) {
+    for (size_t i = 0; i < camber_option_count; i++) {
+        const camber_option_spec *spec = &camber_option_specs[i];
+        if (!is_offered(spec, verb))
+            continue;
+        fprintf(file, "complete -c camber -n '%s' -l %s", when, spec->name);
+        if (spec->letter)
+            fprintf(file, " -s %c", spec->letter);
+        if (spec->argument)
+            print_fish_value(spec, verb, file);
+        fputs(" -d ", file);
+        print_quoted(camber_option_help(spec, verb), file);
+        fputc('\n', file);
+    }
+}
+
+static void print_fish_operands(const camber_verb_spec *verb, const char *when, FILE *file) {
+    const bool tiles = verb->verb == CAMBER_VERB_TILES;
+    if (takes_files(verb) || tiles)
+        fprintf(file, "complete -c camber -n '%s' -F\n", when);
+    if (tiles)
+        fprintf(file, "complete -c camber -n '%s; and not __fish_seen_subcommand_from %s' -a '%s'\n", when,
+                tiles_actions, tiles_actions);
+    if (verb->verb != CAMBER_VERB_STYLE)
+        return;
+    fprintf(file, "complete -c camber -n '%s; and not __fish_seen_subcommand_from %s' -f -a '%s'\n", when,
+            style_actions, style_actions);
+    fprintf(file, "complete -c camber -n '%s; and __fish_seen_subcommand_from %s' -F\n", when, style_actions);
+    fprintf(file, "complete -c camber -n '%s; and __fish_seen_subcommand_from check' -a '", when);
+    print_styles(file);
+    fputs("'\n", file);
+}
+
+static void print_fish(FILE *file) {
+    fputs("# fish completion of camber; made by `camber --completion fish`.\n\n"
+          "# The first word that is no option; status 1 if there is none yet.\n"
+          "function __camber_verb\n"
+          "    for word in (commandline -opc)[2..-1]\n"
+          "        string match -q -- '-*' $word; and continue\n"
+          "        echo $word\n"
+          "        return 0\n"
+          "    end\n"
+          "    return 1\n"
+          "end\n\n"
+          "function __camber_in\n    test (__camber_verb; or echo) = $argv[1]\nend\n\ncomplete -c camber -f\n",
+          file);
+    const char *const begin = "not __camber_verb >/dev/null";
+    print_fish_options(begin, CAMBER_VERB_NONE, file);
+    fprintf(file, "complete -c camber -n '%s' -a help -d 'print the help of camber or of a verb'\n", begin);
+    fprintf(file, "complete -c camber -n '%s' -a version -d 'print the version'\n", begin);
+    for (size_t i = 0; i < camber_verb_count; i++) {
+        const camber_verb_spec *verb = &camber_verb_specs[i];
+        char when[64];
+        fprintf(file, "complete -c camber -n '%s' -a %s -d ", begin, verb->name);
+        print_quoted(verb->summary, file);
+        fprintf(file, "\ncomplete -c camber -n '__camber_in help' -a %s -d ", verb->name);
+        print_quoted(verb->summary, file);
+        fputc('\n', file);
+        snprintf(when, sizeof when, "__camber_in %s", verb->name);
+        print_fish_operands(verb, when, file);
+        print_fish_options(when, verb->verb, file);
+    }
+}
+
 void camber_completion_print(camber_shell shell, FILE *file) {
-    if (shell == CAMBER_SHELL_BASH)
-        print_bash(file);
-    else
-        print_zsh(file);
+    switch (shell) {
+    case CAMBER_SHELL_BASH: print_bash(file); break;
+    case CAMBER_SHELL_ZSH: print_zsh(file); break;
+    case CAMBER_SHELL_FISH: print_fish(file); break;
+    }
 }

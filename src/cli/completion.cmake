@@ -1,7 +1,7 @@
-# Completion scripts for bash and zsh. The built tool prints them, and they are installed where the shells find them.
+# Completion scripts for bash, zsh and fish. The built tool prints them, and they are installed where the shells find them.
 if(NOT CAMBER_SANITIZE AND NOT CAMBER_FUZZ AND NOT CMAKE_CROSSCOMPILING)
   set(scripts)
-  foreach(shell bash zsh)
+  foreach(shell bash zsh fish)
     set(script ${CMAKE_CURRENT_BINARY_DIR}/completion.${shell})
     add_custom_command(OUTPUT ${script} COMMAND $<TARGET_FILE:camber_tool> --completion ${shell} > ${script}
                        DEPENDS camber_tool VERBATIM)
@@ -12,4 +12,6 @@ if(NOT CAMBER_SANITIZE AND NOT CAMBER_FUZZ AND NOT CMAKE_CROSSCOMPILING)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/completion.zsh RENAME _camber
           DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/completion.fish RENAME camber.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()

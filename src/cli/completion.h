@@ -8,6 +8,7 @@
 typedef enum camber_shell {
     CAMBER_SHELL_BASH = 0,
     CAMBER_SHELL_ZSH,
+    CAMBER_SHELL_FISH,
 } camber_shell;
 
 /* Prints a script that completes verbs, options, their values and files. Users source it, or the shell finds it in its

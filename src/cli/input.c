@@ -402,8 +402,9 @@ static void say_network(const camber_input *input) {
     const camber_polylines_stats stats =
         camber_network_get_stats(camber_scene_get_network(input->scene, &camera, &desc));
     if (input->session->report->verbose)
-        camber_report_say(input->session->report, "network: %zu polyline%s, %zu of %zu points", stats.polylines,
-                          camber_plural(stats.polylines), stats.kept_points, stats.points);
+        camber_report_say(input->session->report, "network: %s polyline%s, %s of %s points",
+                          camber_figure_count(stats.polylines).text, camber_plural(stats.polylines),
+                          camber_figure_count(stats.kept_points).text, camber_figure_count(stats.points).text);
 }
 
 static camber_status make_scene(camber_input *input) {
@@ -515,13 +516,13 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
 #ifdef CAMBER_MAP
 void camber_input_say_missing(const camber_input *input) {
     const camber_features_stats read = camber_features_get_stats(input->features);
-    char ways[64] = "";
+    char ways[96] = "";
     if (read.missing_ways > 0)
-        snprintf(ways, sizeof ways, "%s%zu way%s of multipolygons", read.missing_nodes > 0 ? ", " : "",
-                 read.missing_ways, camber_plural(read.missing_ways));
+        snprintf(ways, sizeof ways, "%s%s way%s of multipolygons", read.missing_nodes > 0 ? ", " : "",
+                 camber_figure_count(read.missing_ways).text, camber_plural(read.missing_ways));
     if (read.missing_nodes > 0)
-        camber_report_say(input->session->report, "missing: %zu node%s of ways%s", read.missing_nodes,
-                          camber_plural(read.missing_nodes), ways);
+        camber_report_say(input->session->report, "missing: %s node%s of ways%s",
+                          camber_figure_count(read.missing_nodes).text, camber_plural(read.missing_nodes), ways);
     else if (ways[0])
         camber_report_say(input->session->report, "missing: %s", ways);
 }
@@ -530,9 +531,9 @@ void camber_input_say_split(const camber_input *input) {
     const size_t splits = camber_features_get_stats(input->features).antimeridian_splits;
     if (splits > 0)
         camber_report_say(input->session->report,
-                          "antimeridian: crossed %zu time%s; segments of more than 180 degrees are drawn the short way "
+                          "antimeridian: crossed %s time%s; segments of more than 180 degrees are drawn the short way "
                           "round the Earth",
-                          splits, camber_plural(splits));
+                          camber_figure_count(splits).text, camber_plural(splits));
 }
 #endif
 

@@ -34,47 +34,77 @@ const char *camber_option_argument(const camber_option_spec *spec, camber_verb v
     return note && note->argument ? note->argument : spec->argument;
 }
 
-/* The tool's help lists the options of all verbs. */
+static void print_option(const camber_option_spec *spec, camber_verb verb, FILE *file) {
+    char left[64];
+    const char letter[] = {'-', spec->letter, ',', ' ', 0};
+    const char *argument = camber_option_argument(spec, verb), *help = camber_option_help(spec, verb);
+    snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, argument ? " " : "",
+             argument ? argument : "");
+    fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left, help);
+}
+
+/* Prints the options of a verb, each group with its title. */
 static void print_options(camber_verb verb, FILE *file) {
+    const char *title = NULL;
     for (size_t i = 0; i < camber_option_count; i++) {
         const camber_option_spec *spec = &camber_option_specs[i];
-        const char *help = camber_option_help(spec, verb);
-        if ((verb != CAMBER_VERB_NONE && !(spec->verbs & 1 << verb)) || !*help)
+        for (size_t k = 0; k < camber_option_group_count; k++)
+            if (strcmp(camber_option_groups[k].first, spec->name) == 0)
+                title = camber_option_groups[k].title;
+        if (!(spec->verbs & 1 << verb) || !*camber_option_help(spec, verb))
             continue;
-        char left[64];
-        const char letter[] = {'-', spec->letter, ',', ' ', 0};
-        const char *argument = camber_option_argument(spec, verb);
-        snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, argument ? " " : "",
-                 argument ? argument : "");
-        fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left, help);
+        if (title)
+            fprintf(file, "\n%s:\n", title);
+        title = NULL;
+        print_option(spec, verb, file);
     }
 }
 
-void camber_options_help(camber_verb verb, FILE *file) {
+static void print_verbs(camber_verb_group group, const char *title, FILE *file) {
+    fprintf(file, "\n%s:\n", title);
     for (size_t i = 0; i < camber_verb_count; i++)
-        if (camber_verb_specs[i].verb == verb) {
-            fprintf(file, "camber %s %s\n%s\n\n", camber_verb_specs[i].name, camber_verb_specs[i].operands,
-                    camber_verb_specs[i].summary);
-            print_options(verb, file);
-            fputs("\n`man camber` has examples and the exit statuses.\n", file);
-            return;
-        }
-    fputs("camber VERB [OPTION...] [INPUT...]\nturn maps into anti-aliased pictures\n\n", file);
-    for (size_t i = 0; i < camber_verb_count; i++)
-        fprintf(file, "  %-12s%s\n", camber_verb_specs[i].name, camber_verb_specs[i].summary);
-    fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or the help of a verb");
+        if (camber_verb_specs[i].group == group)
+            fprintf(file, "  %-12s%s\n                %s\n", camber_verb_specs[i].name, camber_verb_specs[i].summary,
+                    camber_verb_specs[i].example);
+}
+
+static void print_tool_help(FILE *file) {
+    fputs("camber VERB [OPTION...] [INPUT...]\nturn maps into anti-aliased pictures\n", file);
+#ifdef CAMBER_MAP
+    print_verbs(CAMBER_VERBS_DRAW, "Draw", file);
+#endif
+    print_verbs(CAMBER_VERBS_CHECK, "Check and measure", file);
+    print_verbs(CAMBER_VERBS_MACHINE, "This machine, and help", file);
+    fprintf(file, "  %-12s%s\n                %s\n", "help [VERB]", "print this text, or a verb's options",
+            camber_verb_specs[0].verb == CAMBER_VERB_RENDER ? "camber help render" : "camber help bench");
     fprintf(file, "  %-12s%s\n", "version", "print the version");
 #ifdef CAMBER_MAP
     fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...), or - for standard "
           "input.\n",
           file);
 #endif
-    fputs("\nOptions of all verbs, with their defaults in brackets (`camber VERB --help` lists those of one verb):\n",
-          file);
-    print_options(CAMBER_VERB_NONE, file);
+    fputs("\nOptions of most verbs (`camber help VERB` lists all of one verb):\n", file);
+    for (size_t i = 0; i < camber_option_count; i++) {
+        const camber_option_spec *spec = &camber_option_specs[i];
+        const bool common = spec->verbs & 1 << CAMBER_VERB_NONE || (spec->verbs & 1 << CAMBER_VERB_STYLE);
+        if (common && *spec->help)
+            print_option(spec, CAMBER_VERB_NONE, file);
+    }
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
           "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 128 + N signal N.\n",
           file);
+}
+
+void camber_options_help(camber_verb verb, FILE *file) {
+    for (size_t i = 0; i < camber_verb_count; i++)
+        if (camber_verb_specs[i].verb == verb) {
+            fprintf(file, "camber %s %s\n%s\n\nExample:\n  %s\n", camber_verb_specs[i].name,
+                    camber_verb_specs[i].operands, camber_verb_specs[i].summary, camber_verb_specs[i].example);
+            print_options(verb, file);
+            fputs("\n`man camber` has more examples and the exit statuses.\n", file);
+            return;
+        }
+    print_tool_help(file);
 }
 
 /* ---- Values ---- */
@@ -209,11 +239,17 @@ static int parse_words(const camber_option_reader *p, const camber_option_spec *
     return CAMBER_EXIT_DONE;
 }
 
-static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
-    /* If two outputs were given, only one would be written. */
-    if (spec->offset == offsetof(camber_options, output) && p->options->output)
+/* If two outputs were given, only one would be written; of two files or boxes to read, only one would be read. */
+static int refuse_second(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
+    if (spec->offset == offsetof(camber_options, output) && spec->letter == 'o')
         return camber_options_refuse(p, "-o %s: is the second output, after -o %s; give one of them", text,
                                      p->options->output);
+    return camber_options_refuse(p, "--%s %s: is the second --%s; give one of them", spec->name, text, spec->name);
+}
+
+static int parse_value(const camber_option_reader *p, const camber_option_spec *spec, const char *text) {
+    if (p->options->given[spec - camber_option_specs] && camber_option_once(spec))
+        return refuse_second(p, spec, text);
     p->options->given[spec - camber_option_specs] = true;
     char *field = (char *)p->options + spec->offset;
     switch (spec->kind) {

@@ -129,6 +129,12 @@ bool camber_options_parse_place(const char *text, camber_tiles_place *place);
 const char *camber_options_tiles_action(const camber_options *options);
 /* Checks the options of serve; called by camber_options_check. */
 int camber_options_check_serve(camber_options *options, char *message, size_t message_size);
+
+enum { CAMBER_MAP_NAME_SIZE = 64 };
+
+/* Splits an input of serve of the form NAME=PATH, where NAME has letters, digits, - and _, and may end in /dark.
+ * Returns the path. name_length receives 0 if there is no name: "./a=b.pbf" is a path. */
+const char *camber_options_split_input(const char *input, size_t *name_length);
 /* Checks the options of tiles; called by camber_options_check. */
 int camber_options_check_tiles(camber_options *options, char *message, size_t message_size);
 /* Checks the options of print, and sets the sheet, after the format of OUT is known; called by camber_options_check. */

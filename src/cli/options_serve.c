@@ -28,14 +28,81 @@ static bool is_origin(const char *text) {
            (is_url(text) && !strchr(strstr(text, "//") + 2, '/'));
 }
 
+const char *camber_options_split_input(const char *input, size_t *name_length) {
+    const char *equals = strchr(input, '=');
+    const size_t length = equals ? (size_t)(equals - input) : 0, first = length ? strcspn(input, "/=") : 0;
+    bool is_name = length > 0 && length <= CAMBER_MAP_NAME_SIZE - 1 && *input != '-';
+    for (size_t i = 0; i < first; i++)
+        is_name = is_name && ((input[i] >= 'a' && input[i] <= 'z') || (input[i] >= 'A' && input[i] <= 'Z') ||
+                              (input[i] >= '0' && input[i] <= '9') || input[i] == '-' || input[i] == '_');
+    is_name =
+        is_name && first > 0 && (first == length || (length == first + 5 && memcmp(input + first, "/dark", 5) == 0));
+    *name_length = is_name ? length : 0;
+    return is_name ? equals + 1 : input;
+}
+
+/* Whether an input has this name; without length characters: no name. */
+static bool has_input_of(const camber_options *options, const char *name, size_t length) {
+    bool found = false;
+    for (size_t i = 0; i < options->input_count; i++) {
+        size_t other;
+        (void)camber_options_split_input(options->inputs[i], &other);
+        found = found || (other == length && memcmp(options->inputs[i], name, length) == 0);
+    }
+    return found;
+}
+
+/* Checks the name of one input. */
+static int check_name(const camber_option_reader *p, const char *input, size_t length) {
+    static const char *const taken[] = {"page", "static", "subtrees", "health", "metrics", "events"};
+    const char *slash = memchr(input, '/', length);
+    const size_t base = slash ? (size_t)(slash - input) : length;
+    const bool is_dark = length == 4 && memcmp(input, "dark", 4) == 0;
+    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
+        if (base == strlen(taken[i]) && memcmp(input, taken[i], base) == 0)
+            return camber_options_refuse(p, "%s: the server has a path of this name; choose another one", input);
+    if (slash && base == 4 && memcmp(input, "dark", 4) == 0)
+        return camber_options_refuse(p, "%s: dark is the name of a dark theme; choose another one", input);
+    if (is_dark || slash) {
+        if (!has_input_of(p->options, input, is_dark ? 0 : base))
+            return camber_options_refuse(p, "%s: a dark theme of no map; also give the light one, as %.*s%sINPUT",
+                                         input, is_dark ? 0 : (int)base, input, is_dark ? "" : "=");
+    } else if (has_input_of(p->options, input, 0)) {
+        return camber_options_refuse(p, "%s: another input has no name; give each of them one, as NAME=INPUT", input);
+    }
+    return input[length + 1] ? CAMBER_EXIT_DONE
+                             : camber_options_refuse(p, "%s: no input after the name; give NAME=INPUT", input);
+}
+
+static int check_names(const camber_option_reader *p) {
+    const camber_options *options = p->options;
+    size_t named = 0;
+    for (size_t i = 0; i < options->input_count; i++) {
+        size_t length;
+        const char *path = camber_options_split_input(options->inputs[i], &length);
+        named += length > 0;
+        const int status = length ? check_name(p, options->inputs[i], length) : CAMBER_EXIT_DONE;
+        if (status != CAMBER_EXIT_DONE)
+            return status;
+        if (strcmp(path, "-") == 0)
+            return camber_options_refuse(p, "serve: standard input cannot be read again at SIGHUP; name a file");
+    }
+    if (named && (options->renderd || options->edit))
+        return camber_options_refuse(
+            p, "--%s: works with one map; serve it alone, without NAME=", options->renderd ? "renderd" : "edit");
+    if (named && options->name && !has_input_of(options, "", 0))
+        return camber_options_refuse(p, "--name: each map has its own name; leave it out");
+    return CAMBER_EXIT_DONE;
+}
+
 int camber_options_check_serve(camber_options *options, char *message, size_t message_size) {
     const camber_option_reader it = {options, message, message_size, NULL}, *p = &it;
     if (!options->input_count && !options->style && !options->edit)
         return camber_options_refuse(
             p, "serve: no input; give a file with lines, such as city.osm.pbf, or an archive of tiles");
-    for (size_t i = 0; i < options->input_count; i++)
-        if (strcmp(options->inputs[i], "-") == 0)
-            return camber_options_refuse(p, "serve: standard input cannot be read again at SIGHUP; name a file");
+    const int status = check_names(p);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
     if (options->style && strcmp(options->style, "-") == 0)
         return camber_options_refuse(p, "--style -: cannot be read again at SIGHUP; name a file");
     const bool listens = !options->listen || is_address(options->listen);

@@ -43,22 +43,51 @@ enum {
 
 const camber_verb_spec camber_verb_specs[] = {
 #ifdef CAMBER_MAP
-    {"render", CAMBER_VERB_RENDER, "INPUT... | --style FILE -o OUT", "draw a map: PNG, WebP, PDF or SVG"},
-    {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "write the mesh that a GPU would draw, as GLB"},
-    {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE", "compare the methods fan, kite and strip"},
-    {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "check kernels and pixels on every device"},
-    {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "time every stage"},
-    {"style", CAMBER_VERB_STYLE, "check NAME|FILE | eval FILE", "check a style; evaluate an expression"},
+    {"render", CAMBER_VERB_RENDER, "INPUT... | --style FILE -o OUT", "draw a map: PNG, WebP, PDF or SVG",
+     CAMBER_VERBS_DRAW, "camber render city.osm.pbf -o city.png --size 1600x1200"},
+    {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "write the mesh that a GPU would draw, as GLB",
+     CAMBER_VERBS_DRAW, "camber tessellate city.osm.pbf -o city.glb"},
+    {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE", "compare the methods fan, kite and strip",
+     CAMBER_VERBS_CHECK, "camber compare city.osm.pbf --where \"highway='primary'\""},
+    {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "check kernels and pixels on every device",
+     CAMBER_VERBS_CHECK, "camber validate --pictures failures"},
+    {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "time every stage", CAMBER_VERBS_CHECK,
+     "camber bench city.osm.pbf --runs 20"},
+    {"style", CAMBER_VERB_STYLE, "check NAME|FILE | eval FILE", "check a style; evaluate an expression",
+     CAMBER_VERBS_CHECK, "camber style check style.json"},
     {"tiles", CAMBER_VERB_TILES, "INPUT... -o OUT | show FILE | verify FILE | merge PART... -o OUT",
-     "draw tiles into an archive; show, verify and merge archives"},
-    {"serve", CAMBER_VERB_SERVE, "INPUT... | --style FILE | ARCHIVE",
-     "serve tiles and pictures over HTTP, drawn on request"},
+     "draw tiles into an archive; show, verify and merge archives", CAMBER_VERBS_DRAW,
+     "camber tiles city.osm.pbf -o city.pmtiles --max-zoom 15"},
+    {"serve", CAMBER_VERB_SERVE, "[NAME=]INPUT... | --style FILE | [NAME=]ARCHIVE...",
+     "serve tiles and pictures over HTTP, drawn on request", CAMBER_VERBS_DRAW,
+     "camber serve city.osm.pbf --listen 127.0.0.1:8080"},
 #else
-    {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "compare the methods fan, kite and strip"},
-    {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "check kernels and pixels on every device"},
-    {"bench", CAMBER_VERB_BENCH, "--polylines FILE", "time every stage"},
+    {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "compare the methods fan, kite and strip", CAMBER_VERBS_CHECK,
+     "camber compare --polylines lines.bin"},
+    {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "check kernels and pixels on every device",
+     CAMBER_VERBS_CHECK, "camber validate --pictures failures"},
+    {"bench", CAMBER_VERB_BENCH, "--polylines FILE", "time every stage", CAMBER_VERBS_CHECK,
+     "camber bench --polylines lines.bin --runs 20"},
 #endif
-    {"info", CAMBER_VERB_INFO, "", "list devices, GL back ends, versions and readable formats"},
+    {"info", CAMBER_VERB_INFO, "", "list devices, GL back ends, versions and readable formats", CAMBER_VERBS_MACHINE,
+     "camber info --warm"},
+};
+
+const camber_option_group camber_option_groups[] = {
+    {"output", "What is written"},
+    {"size", "What is shown"},
+    {"paper", "Paper"},
+    {"attribution", "How it looks"},
+    {"layer", "What is read"},
+    {"dump", "What is measured"},
+    {"method", "How lines are drawn"},
+    {"device", "Device and memory"},
+    {"allow-remote", "What files may reach"},
+    {"min-zoom", "Tiles"},
+    {"listen", "Server"},
+    {"warm", "Kernels"},
+    {"junit", "Checks"},
+    {"json", "Messages"},
 };
 
 #define FIELD(member) offsetof(camber_options, member)
@@ -236,9 +265,10 @@ const camber_option_spec camber_option_specs[] = {
      "also print what was chosen and how long each step took"},
     {"help", 'h', CAMBER_OPTION_FLAG, TALKING | TOOL, FIELD(help), NULL, "print this text"},
     {"version", 'V', CAMBER_OPTION_FLAG, TALKING | TOOL, FIELD(version), NULL, "print the version"},
-    {"completion", 0, CAMBER_OPTION_CHOICE, TOOL, FIELD(completion), "bash|zsh",
+    {"completion", 0, CAMBER_OPTION_CHOICE, TOOL, FIELD(completion), "bash|zsh|fish",
      "print a completion script for this shell"},
 };
 
 const size_t camber_verb_count = sizeof camber_verb_specs / sizeof *camber_verb_specs;
 const size_t camber_option_count = sizeof camber_option_specs / sizeof *camber_option_specs;
+const size_t camber_option_group_count = sizeof camber_option_groups / sizeof *camber_option_groups;

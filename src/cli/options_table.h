@@ -4,11 +4,22 @@
 
 #include "cli/options.h"
 
+#include <stddef.h>
+
+/* The groups of verbs in --help, in their order there. */
+typedef enum camber_verb_group {
+    CAMBER_VERBS_DRAW,
+    CAMBER_VERBS_CHECK,
+    CAMBER_VERBS_MACHINE,
+} camber_verb_group;
+
 typedef struct camber_verb_spec {
     const char *name;
     camber_verb verb;
     const char *operands; /* as shown by --help */
     const char *summary;
+    camber_verb_group group;
+    const char *example; /* a command */
 } camber_verb_spec;
 
 /* The type of an option's member in camber_options, and its valid values. */
@@ -52,8 +63,15 @@ typedef struct camber_option_spec {
     camber_option_note notes[4];
 } camber_option_spec;
 
+/* A group of options in --help: it begins with this option of the table. */
+typedef struct camber_option_group {
+    const char *first, *title;
+} camber_option_group;
+
 extern const camber_verb_spec camber_verb_specs[];
 extern const size_t camber_verb_count;
+extern const camber_option_group camber_option_groups[];
+extern const size_t camber_option_group_count;
 extern const camber_option_spec camber_option_specs[];
 extern const size_t camber_option_count;
 
@@ -61,6 +79,12 @@ extern const size_t camber_option_count;
 static inline bool camber_option_repeats(const camber_option_spec *spec) {
     return spec->kind == CAMBER_OPTION_WHERES || spec->kind == CAMBER_OPTION_PLACES ||
            spec->kind == CAMBER_OPTION_FONTS;
+}
+/* Whether giving the option twice is refused, because it says what is read, shown or written, and one of two would be
+ * ignored. Of two settings the last one counts, so that a script can set some and let its caller override them. */
+static inline bool camber_option_once(const camber_option_spec *spec) {
+    return spec->kind == CAMBER_OPTION_FILE || spec->kind == CAMBER_OPTION_FOLDER || spec->kind == CAMBER_OPTION_BBOX ||
+           spec->kind == CAMBER_OPTION_CENTER || spec->offset == offsetof(camber_options, layer);
 }
 /* Returns an option's help text for a verb, or for the tool (CAMBER_VERB_NONE). "": the verb's help does not list
  * it. */

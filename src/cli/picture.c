@@ -30,7 +30,7 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     const double start_ms = camber_now_ms();
     w->status = w->png ? camber_png_write_rows(w->png, rgba, row_count) : keep_rows(w, rgba, first_row, row_count);
     w->write_ms += camber_now_ms() - start_ms;
-    camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
+    camber_report_step(w->report, "writing", "rows", first_row + row_count, w->height);
     /* When a write has failed, drawing stops with an error. It is not reported, because the failed write has been. */
     w->report->sealed = w->status != CAMBER_OK;
     return w->status == CAMBER_OK;

@@ -1,5 +1,6 @@
 /* Prints each error and warning as one line on standard error, whatever characters a file's name contains; a progress
- * bar that erases itself; and JSON on standard output. Also turns a status of the library into an exit status. */
+ * bar (progress.c) that is erased first; and JSON on standard output. Also turns a status of the library into an exit
+ * status. */
 #include "cli/report.h"
 
 #include "base/whole_file.h"
@@ -11,33 +12,48 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#define BAR_CELLS 30
-#define BAR_EVERY_MS 50
+/* Colours of the word "camber" of a line, and of the name of OUT. */
+#define RED "\033[31m"
+#define YELLOW "\033[33m"
+#define GREEN "\033[32m"
+#define PLAIN "\033[0m"
+
+/* https://no-color.org */
+static bool shows_colors(void) {
+    const char *none = getenv("NO_COLOR"), *kind = getenv("TERM");
+    return isatty(STDERR_FILENO) && !(none && *none) && kind && *kind && strcmp(kind, "dumb") != 0;
+}
 
 void camber_report_open(camber_report *report, const camber_options *options) {
-    *report = (camber_report){
-        .quiet = options->quiet, .verbose = options->verbose, .bars = !options->quiet && isatty(STDERR_FILENO)};
+    *report = (camber_report){.quiet = options->quiet,
+                              .verbose = options->verbose,
+                              .json = options->json,
+                              .bars = !options->quiet && isatty(STDERR_FILENO),
+                              .colors = shows_colors()};
     report->terminal = report->bars;
 }
 
 /* A file name may contain any bytes: an error stays one line and sends no control characters to the terminal. It is
- * written in one call, so that lines of other threads and processes cannot interleave with it. */
-static void print_line(camber_report *report, const char *prefix, const char *text) {
-    char line[4160];
-    size_t length = (size_t)snprintf(line, sizeof line - 1, "%s%s", prefix, text);
-    length = length < sizeof line - 2 ? length : sizeof line - 2;
-    for (size_t i = 0; i < length; i++)
-        line[i] = (unsigned char)line[i] < 0x20 || line[i] == 0x7f ? '?' : line[i];
+ * written in one call, so that lines of other threads and processes cannot interleave with it. color: of the prefix. */
+static void print_line(camber_report *report, const char *color, const char *prefix, const char *text) {
+    char line[4240];
+    const size_t most = sizeof line - 2;
+    const bool colored = report->colors && *color;
+    size_t length = 0;
+    const struct {
+        const char *text;
+        bool raw;
+    } parts[] = {{colored ? color : "", true}, {prefix, false}, {colored ? PLAIN : "", true}, {text, false}};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        for (const char *c = parts[i].text; *c && length < most; c++)
+            line[length++] = !parts[i].raw && ((unsigned char)*c < 0x20 || *c == 0x7f) ? '?' : *c;
     line[length] = '\n';
     camber_report_erase_bar(report);
     fwrite(line, 1, length + 1, stderr);
 }
 
 void camber_report_erase_bar(camber_report *report) {
-    if (report->bar_drawn)
-        fputs("\r\033[K", stderr);
-    report->bar_drawn = false;
-    report->bar_ms = 0;
+    camber_progress_erase(&report->bar);
 }
 
 /* Prints a line that stays visible and says what takes so long, and that this happens only once. Another thread's
@@ -45,32 +61,22 @@ void camber_report_erase_bar(camber_report *report) {
 static void say_compiles(camber_report *report, const char *stage) {
     if (!report->terminal || report->said_compiles)
         return;
-    report->said_compiles = report->bar_drawn = true;
+    report->said_compiles = report->bar.drawn = true;
     camber_report_say(report, "%s for this machine, once; `camber info --warm` does it in advance, for all users",
                       stage);
 }
 
-void camber_report_progress(void *user, const char *stage, double fraction) {
+void camber_report_progress(void *user, const camber_progress_info *progress) {
     camber_report *report = user;
-    if (strcmp(stage, "compiling kernels") == 0) {
-        say_compiles(report, stage);
-        return;
-    }
-    const double now_ms = camber_now_ms();
-    if (!report->bars || (report->bar_drawn && now_ms - report->bar_ms < BAR_EVERY_MS))
-        return;
-    report->bar_drawn = true;
-    report->bar_ms = now_ms;
-    if (!(fraction >= 0)) {
-        fprintf(stderr, "\r\033[K%-14s ...", stage);
-        return;
-    }
-    char bar[BAR_CELLS + 1];
-    const int cells = fraction < 1 ? (int)(fraction * BAR_CELLS) : BAR_CELLS;
-    memset(bar, '#', (size_t)cells);
-    memset(bar + cells, ' ', (size_t)(BAR_CELLS - cells));
-    bar[BAR_CELLS] = 0;
-    fprintf(stderr, "\r\033[K%-14s [%s] %3d %%", stage, bar, fraction < 1 ? (int)(fraction * 100) : 100);
+    if (strcmp(progress->stage, "compiling kernels") == 0)
+        say_compiles(report, progress->stage);
+    else if (report->bars)
+        camber_progress_show(&report->bar, progress);
+}
+
+void camber_report_step(camber_report *report, const char *stage, const char *unit, uint64_t done, uint64_t total) {
+    const double fraction = total ? (double)done / (double)total : -1.0;
+    camber_report_progress(report, &(camber_progress_info){stage, fraction, unit, done, total});
 }
 
 /* Copies the message, and replaces the name of the temporary copy by "standard input". */
@@ -91,9 +97,9 @@ void camber_report_log(void *user, camber_log_level level, const char *message) 
             return;
         snprintf(report->error, sizeof report->error, "%s", text);
     } else if (level == CAMBER_LOG_WARNING && !report->quiet) {
-        print_line(report, "camber: warning: ", text);
+        print_line(report, YELLOW, "camber: warning: ", text);
     } else if (level == CAMBER_LOG_INFO && report->verbose) {
-        print_line(report, "camber: info: ", text);
+        print_line(report, "", "camber: info: ", text);
     }
 }
 
@@ -106,7 +112,7 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
     if (report->keeps)
         snprintf(report->error, sizeof report->error, "%s", text);
     else
-        print_line(report, "camber: ", text);
+        print_line(report, RED, "camber: ", text);
     return exit_status;
 }
 
@@ -170,7 +176,21 @@ void camber_report_say(camber_report *report, const char *format, ...) {
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    print_line(report, "", text);
+    print_line(report, "", "", text);
+}
+
+void camber_report_done(camber_report *report, const char *out, uint64_t size_bytes, double ms, const char *format,
+                        ...) {
+    char what[2048], text[2304];
+    if (report->quiet || report->json)
+        return;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
+    snprintf(text, sizeof text, ": %s%s%s, %s", what, size_bytes ? ", " : "",
+             size_bytes ? camber_figure_bytes(size_bytes).text : "", camber_figure_time(ms).text);
+    print_line(report, GREEN, out, text);
 }
 
 const char *camber_plural(size_t count) {

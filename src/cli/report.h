@@ -3,7 +3,9 @@
 #define CAMBER_CLI_REPORT_H
 
 #include "base/clock.h"
+#include "cli/figures.h"
 #include "cli/options.h"
+#include "cli/progress.h"
 
 #include <jansson.h>
 
@@ -14,12 +16,12 @@
 #endif
 
 typedef struct camber_report {
-    bool quiet, verbose;
+    bool quiet, verbose, json;
     bool bars; /* standard error is a terminal, and the user wants progress bars */
-    bool bar_drawn;
+    camber_progress_bar bar;
     bool terminal;      /* standard error is a terminal, and --quiet is not given */
+    bool colors;        /* standard error is a terminal that shows colours, and NO_COLOR is not set */
     bool said_compiles; /* the message about a slow first compilation has been printed */
-    double bar_ms;      /* when the progress bar was last drawn */
     const char *spool;  /* path of the copy of standard input, which messages call "standard input"; NULL: none */
     bool sealed;        /* the first failure has been reported; errors that follow from it are not printed */
     bool keeps;         /* failures are stored in error instead of being printed */
@@ -31,7 +33,10 @@ void camber_report_open(camber_report *report, const camber_options *options);
 /* Callbacks of a context; user is the report. An error is stored until camber_report_status, because an error that the
  * library has recovered from is not an error of the tool. */
 void camber_report_log(void *user, camber_log_level level, const char *message);
-void camber_report_progress(void *user, const char *stage, double fraction);
+void camber_report_progress(void *user, const camber_progress_info *progress);
+/* Shows the progress of a step of the tool, as camber_progress_fn: total 0: how many units there are is not known; unit
+ * NULL: nothing is counted. */
+void camber_report_step(camber_report *report, const char *stage, const char *unit, uint64_t done, uint64_t total);
 void camber_report_erase_bar(camber_report *report);
 
 /* Prints one line "camber: ..." on standard error and returns exit_status. */
@@ -44,6 +49,11 @@ void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_P
 
 /* Prints a line of text for people on standard error, unless --quiet is given. */
 void camber_report_say(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
+
+/* Prints the last line of a verb, "OUT: WHAT, SIZE, TIME", unless --quiet or --json is given. size_bytes 0: without a
+ * size. */
+void camber_report_done(camber_report *report, const char *out, uint64_t size_bytes, double ms, const char *format, ...)
+    CAMBER_PRINTF(5, 6);
 
 /* Returns the plural ending of a noun: "s", or "" for a count of 1. */
 const char *camber_plural(size_t count);

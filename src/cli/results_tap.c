@@ -76,7 +76,8 @@ static void print_finding(const camber_finding *finding) {
 }
 
 static void print_check(void *user, const camber_check *check, size_t number) {
-    (void)user;
+    const camber_tap *tap = user;
+    camber_report_erase_bar(tap->report);
     printf("%s %zu - ", check->result == CAMBER_RESULT_FAILED ? "not ok" : "ok", number);
     print_description(check->name);
     if (check->result == CAMBER_RESULT_SKIPPED) {
@@ -110,6 +111,7 @@ static void print_group(void *user, const camber_results *results) {
     const camber_check *first = NULL;
     const size_t count = results->count - results->group_first;
     const size_t failed = count_of(results, CAMBER_RESULT_FAILED), skipped = count_of(results, CAMBER_RESULT_SKIPPED);
+    camber_report_erase_bar(tap->report);
     printf("%s %zu - ", failed ? "not ok" : "ok", ++tap->groups);
     print_description(results->group);
     printf(": %zu check%s", count, camber_plural(count));
@@ -134,8 +136,8 @@ static void print_group(void *user, const camber_results *results) {
 
 /* ---- The whole text ---- */
 
-void camber_tap_open(camber_tap *tap, bool each) {
-    *tap = (camber_tap){.each = each};
+void camber_tap_open(camber_tap *tap, bool each, camber_report *report) {
+    *tap = (camber_tap){.each = each, .report = report};
     puts("TAP version 14");
 }
 

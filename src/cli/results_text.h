@@ -12,12 +12,13 @@ size_t camber_character_size(const char *character);
 /* ---- TAP: results_tap.c ---- */
 
 typedef struct camber_tap {
-    bool each;     /* one line per check; otherwise one line per group */
-    size_t groups; /* printed so far */
+    bool each;             /* one line per check; otherwise one line per group */
+    size_t groups;         /* printed so far */
+    camber_report *report; /* its progress bar may be on the terminal that the lines go to */
 } camber_tap;
 
 /* Prints the first line. */
-void camber_tap_open(camber_tap *tap, bool each);
+void camber_tap_open(camber_tap *tap, bool each, camber_report *report);
 /* Returns a listener that prints each result at once, so that a reader need not wait for the end. */
 camber_results_listener camber_tap_listener(camber_tap *tap);
 /* Prints TAP's word for a run that ends before its last check. */

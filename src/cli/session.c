@@ -27,10 +27,10 @@ static camber_access access_of(const camber_options *options) {
     return access;
 }
 
-static void show_progress(void *user, const char *stage, double fraction) {
+static void show_progress(void *user, const camber_progress_info *progress) {
     camber_session *session = user;
     camber_watch_beat(&session->watch);
-    camber_report_progress(session->report, stage, fraction);
+    camber_report_progress(session->report, progress);
 }
 
 /* 0: the budget determines it */
@@ -310,6 +310,20 @@ void camber_session_close(camber_session *session) {
 
 camber_method camber_session_method(const camber_session *session) {
     return session->options->method < 0 ? CAMBER_METHOD_STRIP : (camber_method)session->options->method;
+}
+
+void camber_session_say_memory(const camber_session *session) {
+    char meshes[96] = "";
+    if (!session->report->verbose || !session->budget)
+        return;
+    if (session->device)
+        snprintf(meshes, sizeof meshes, ", of which meshes may take %s",
+                 camber_figure_bytes(camber_device_get_memory(session->device).most_bytes).text);
+    camber_report_say(session->report,
+                      "memory: the process took at most %s, drivers and libraries included; without them it may take "
+                      "%s%s",
+                      camber_figure_bytes(camber_peak_rss_bytes()).text,
+                      camber_figure_bytes(camber_budget_get_most_bytes(session->budget)).text, meshes);
 }
 
 void camber_session_describe(const camber_session *session, json_t *object) {

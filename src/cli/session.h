@@ -67,6 +67,14 @@ void camber_session_close(camber_session *session);
 /* Returns the method that the options select, or the default. */
 camber_method camber_session_method(const camber_session *session);
 
+/* Returns the milliseconds since the tool started. */
+static inline double camber_session_elapsed_ms(const camber_session *session) {
+    return camber_now_ms() - session->start_ms;
+}
+
+/* With --verbose: says how much memory was in use, and what limits it. */
+void camber_session_say_memory(const camber_session *session);
+
 /* Adds "device", "gl_renderer", "draw", "draw_reason" and "sharing", as far as these parts are open. */
 void camber_session_describe(const camber_session *session, json_t *object);
 

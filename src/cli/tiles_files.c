@@ -58,4 +58,42 @@ void camber_tiles_files_release(camber_tiles_files *files) {
     camber_guard_unlock(guard);
 }
 
+typedef struct summary {
+    uint64_t tiles, size_bytes;
+    int min_zoom, max_zoom;
+} summary;
+
+/* Counts the tiles of an archive with a context of its own, because the session's does not read its outputs. */
+static bool look_into(const char *path, summary *found) {
+    const camber_context_desc desc = {.cache_dir = ""};
+    camber_context *context = NULL;
+    camber_tiles_info *info = NULL;
+    const bool shown =
+        camber_context_create(&desc, &context) == CAMBER_OK && camber_tiles_show(context, path, &info) == CAMBER_OK;
+    if (shown)
+        *found = (summary){info->tiles, 0, info->min_zoom, info->max_zoom};
+    for (size_t i = 0; shown && i < info->zoom_count; i++)
+        found->size_bytes += info->zooms[i].size_bytes;
+    camber_tiles_info_destroy(info);
+    camber_context_destroy(context);
+    return shown;
+}
+
+void camber_tiles_say_done(camber_session *session, const char *path, const char *what, uint64_t tiles,
+                           uint64_t size_bytes) {
+    camber_report *report = session->report;
+    struct stat about;
+    char zooms[48] = "";
+    summary found = {tiles, size_bytes, 0, 0};
+    if (report->quiet || report->json)
+        return;
+    const bool is_file = stat(path, &about) == 0 && S_ISREG(about.st_mode);
+    if ((is_file || !tiles) && look_into(path, &found))
+        snprintf(zooms, sizeof zooms, ", zooms %d to %d", found.min_zoom, found.max_zoom);
+    if (is_file)
+        found.size_bytes = (uint64_t)about.st_size;
+    camber_report_done(report, path, found.size_bytes, camber_session_elapsed_ms(session), "%s%s tile%s%s", what,
+                       camber_figure_count(found.tiles).text, camber_plural((size_t)found.tiles), zooms);
+}
+
 #endif

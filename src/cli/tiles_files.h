@@ -22,4 +22,9 @@ int camber_tiles_files_name(camber_tiles_files *files, const char *path);
 void camber_tiles_files_guard(void *user);
 void camber_tiles_files_release(camber_tiles_files *files);
 
+/* Prints the last line of a verb about an archive: its tiles, zooms and size, after the words `what`. tiles,
+ * size_bytes: of a folder, if they are known; otherwise 0, and it is walked to count them. */
+void camber_tiles_say_done(camber_session *session, const char *path, const char *what, uint64_t tiles,
+                           uint64_t size_bytes);
+
 #endif

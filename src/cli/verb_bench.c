@@ -31,6 +31,7 @@ typedef struct job {
     summary summaries[TIMES]; /* in the order of the members of run_times */
     camber_frame_stats stats;
     uint32_t width, height;
+    size_t output_bytes, dump_bytes;
 } job;
 
 /* Times a whole frame, from the lines to pixels in memory, and then only its stages, with their input already on the
@@ -116,7 +117,7 @@ static int measure(job *j) {
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     run_times unused;
     for (uint32_t i = 0; i < WARM_UPS + runs && status == CAMBER_EXIT_DONE; i++) {
-        camber_report_progress(session->report, "timing", (double)i / (WARM_UPS + runs));
+        camber_report_step(session->report, "timing", "runs", i, WARM_UPS + runs);
         status = time_run(j, i < WARM_UPS ? &unused : &j->runs[i - WARM_UPS]);
     }
     camber_report_erase_bar(session->report);
@@ -142,8 +143,10 @@ static int run(job *j) {
         status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     if (status == CAMBER_EXIT_DONE && session->options->dump)
         status = write_dump(j);
+    j->dump_bytes = j->dump.size_bytes;
     if (status == CAMBER_EXIT_DONE && session->options->output)
         status = camber_picture_write(&j->input, j->mesh, &j->output, NULL);
+    j->output_bytes = j->output.size_bytes;
     return status;
 }
 
@@ -211,14 +214,18 @@ static int print_text(const job *j) {
                 camber_sharing_get_name(camber_renderer_get_sharing(session->renderer)));
     else
         fprintf(file, "%s; drawn in OpenCL\n", device.name);
-    fprintf(file, "%u x %u px, %s, %zu polyline%s, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
-            j->height, camber_method_get_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
-            lines.kept_points, j->input.points_in, lines.kept_segments, j->input.segments_in);
-    fprintf(file, "%zu vertices, %zu triangles, %.1f MB, ", mesh.vertex_count, mesh.triangle_count,
-            (double)mesh.bytes / 1e6);
+    fprintf(file, "%u x %u px, %s, %s polyline%s, %s points (%s read), %s segments (%s read)\n", j->width, j->height,
+            camber_method_get_name(mesh.method), camber_figure_count(lines.polylines).text,
+            camber_plural(lines.polylines), camber_figure_count(lines.kept_points).text,
+            camber_figure_count(j->input.points_in).text, camber_figure_count(lines.kept_segments).text,
+            camber_figure_count(j->input.segments_in).text);
+    fprintf(file, "%s vertices, %s triangles, %s of meshes, ", camber_figure_count(mesh.vertex_count).text,
+            camber_figure_count(mesh.triangle_count).text, camber_figure_bytes(mesh.bytes).text);
     if (session->surface) /* kernels have no draw calls */
-        fprintf(file, "%zu draw call%s, ", j->stats.draw_calls, camber_plural(j->stats.draw_calls));
-    fprintf(file, "peak memory %.0f MB\n", (double)camber_peak_rss_bytes() / 1e6);
+        fprintf(file, "%s draw call%s, ", camber_figure_count(j->stats.draw_calls).text,
+                camber_plural(j->stats.draw_calls));
+    fprintf(file, "at most %s of memory, drivers and libraries included\n",
+            camber_figure_bytes(camber_peak_rss_bytes()).text);
     static const char *const names[TIMES] = {"tessellate", "draw",        "frame",    "cull_count", "cull_emit",
                                              "classify",   "scan",        "emit",     "setup",      "bin_count",
                                              "bin_scan",   "bin_scatter", "rasterize"};
@@ -236,11 +243,28 @@ static int print_text(const job *j) {
     return taken ? CAMBER_EXIT_DONE : camber_report_flush(session->report);
 }
 
+/* The times are the result, and so are files, if some were asked for. */
+static void say_done(const job *j) {
+    const camber_options *options = j->session->options;
+    char files[2048] = "";
+    const char *const paths[] = {options->output, options->dump};
+    const size_t sizes[] = {j->output_bytes, j->dump_bytes};
+    for (size_t i = 0; i < 2; i++)
+        if (paths[i])
+            snprintf(files + strlen(files), sizeof files - strlen(files), ", %.900s (%s)",
+                     strcmp(paths[i], "-") == 0 ? "standard output" : paths[i], camber_figure_bytes(sizes[i]).text);
+    camber_report_done(j->session->report, "bench", 0, camber_session_elapsed_ms(j->session),
+                       "%s run%s of %u x %u px%s", camber_figure_count(options->runs).text,
+                       camber_plural(options->runs), j->width, j->height, files);
+}
+
 int camber_verb_bench(camber_session *session) {
     job j = {.session = session};
     int status = run(&j);
     if (status == CAMBER_EXIT_DONE)
         status = session->options->json ? print_json(&j) : print_text(&j);
+    if (status == CAMBER_EXIT_DONE)
+        say_done(&j);
     free(j.runs);
     free(j.pixels);
     camber_mesh_destroy(j.mesh);

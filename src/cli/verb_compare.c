@@ -98,21 +98,7 @@ static int print_json(const camber_comparison *c) {
 
 /* Prints a number right-aligned, with commas between thousands. */
 static void put_number(double value, int decimals, int width) {
-    char digits[64], text[96];
-    if (isnan(value)) {
-        printf("%*s", width, "-");
-        return;
-    }
-    const int size = snprintf(digits, sizeof digits, "%.*f", decimals, value);
-    const int whole = decimals ? size - decimals - 1 : size;
-    int used = 0;
-    for (int i = 0; i < size; i++) {
-        if (i > 0 && i < whole && (whole - i) % 3 == 0)
-            text[used++] = ',';
-        text[used++] = digits[i];
-    }
-    text[used] = 0;
-    printf("%*s", width, text);
+    printf("%*s", width, isnan(value) ? "-" : camber_figure_number(value, decimals).text);
 }
 
 /* The average of a count is printed with decimals if it is small. */
@@ -232,6 +218,11 @@ int camber_verb_compare(camber_session *session) {
         status = camber_output_publish(&plot);
     if (status == CAMBER_EXIT_DONE)
         status = options->json ? print_json(&c) : print_text(&c);
+    if (status == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, "compare", 0, camber_session_elapsed_ms(session),
+                           "%s network%s of %u x %u px%s%s", camber_figure_count(c.networks.count).text,
+                           camber_plural(c.networks.count), c.networks.width, c.networks.height,
+                           options->plot ? ", plot in " : "", options->plot ? options->plot : "");
     camber_comparison_close(&c);
     camber_output_discard(&plot);
     return status;

@@ -170,6 +170,11 @@ int camber_verb_info(camber_session *session) {
     if (session->options->json)
         return camber_report_json(session->report, object);
     print_text(object);
+    const size_t devices = json_array_size(json_object_get(object, "devices"));
     json_decref(object);
-    return camber_report_flush(session->report);
+    const int printed = camber_report_flush(session->report);
+    if (printed == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, "info", 0, camber_session_elapsed_ms(session), "%s device%s",
+                           camber_figure_count(devices).text, camber_plural(devices));
+    return printed;
 }

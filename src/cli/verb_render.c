@@ -50,7 +50,7 @@ static int draw(job *j) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     camber_input_warn_empty(&j->input, "nothing is drawn");
-    camber_report_progress(session->report, "tessellating", -1);
+    camber_report_step(session->report, "tessellating", NULL, 0, 0);
     const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
     const bool vector = camber_format_is_vector(session->options->format);
@@ -130,43 +130,56 @@ static int print_json(const job *j) {
     return camber_report_json(session->report, object);
 }
 
-/* Prints the counts; kernels have no draw calls. */
+/* Says what was made of the input; kernels have no draw calls. */
 static void print_counts(const job *j, const camber_scene_info *scene) {
     (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const size_t calls = j->times.frame.draw_calls;
     char drawn[64] = "drawn by OpenCL kernels";
     if (camber_renderer_get_rasterizer(j->session->renderer) == CAMBER_RASTERIZER_GL)
-        snprintf(drawn, sizeof drawn, "%zu draw call%s", calls, camber_plural(calls));
-    camber_report_say(
-        j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu label%s, %zu triangle%s (%s), %s",
-        scene->features, camber_plural(scene->features), scene->polylines, camber_plural(scene->polylines),
-        scene->points, camber_plural(scene->points), scene->labels, camber_plural(scene->labels), mesh.triangle_count,
-        camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
+        snprintf(drawn, sizeof drawn, "%s draw call%s", camber_figure_count(calls).text, camber_plural(calls));
+    camber_report_say(j->session->report, "%s feature%s, %s polyline%s, %s point%s, %s label%s, %s triangle%s (%s), %s",
+                      camber_figure_count(scene->features).text, camber_plural(scene->features),
+                      camber_figure_count(scene->polylines).text, camber_plural(scene->polylines),
+                      camber_figure_count(scene->points).text, camber_plural(scene->points),
+                      camber_figure_count(scene->labels).text, camber_plural(scene->labels),
+                      camber_figure_count(mesh.triangle_count).text, camber_plural(mesh.triangle_count),
+                      camber_method_get_name(mesh.method), drawn);
 }
 
-/* Prints how many rings were invalid; usually none is. */
+/* Says how many rings were invalid; usually none is. What was lost is always said, the rest with --verbose. */
 static void print_rings(const job *j) {
     const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {
         size_t count;
         const char *noun, *what;
-    } all[] = {{read.closed_rings, "ring", "closed"},
-               {read.turned_rings, "ring", "turned"},
-               {read.empty_rings, "ring", "without area left out"},
-               {read.crossing_rings, "self-crossing ring", "kept"},
-               {read.spiked_rings, "ring", "with a spike"},
-               {read.outside_holes, "hole", "filled outside of areas"},
-               {read.open_relations, "multipolygon", "lacking ways"},
-               {read.dropped_relations, "multipolygon", "left out"}};
+        bool lost;
+    } all[] = {{read.closed_rings, "ring", "closed", false},
+               {read.turned_rings, "ring", "turned", false},
+               {read.empty_rings, "ring", "without area left out", false},
+               {read.crossing_rings, "self-crossing ring", "kept", false},
+               {read.spiked_rings, "ring", "with a spike", false},
+               {read.outside_holes, "hole", "filled outside of areas", false},
+               {read.open_relations, "multipolygon", "lacking ways", false},
+               {read.dropped_relations, "multipolygon", "left out", true}};
     char text[512] = "";
     size_t length = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (all[i].count > 0)
-            length += (size_t)snprintf(text + length, sizeof text - length, "%s%zu %s%s %s", length > 0 ? ", " : "",
-                                       all[i].count, all[i].noun, camber_plural(all[i].count), all[i].what);
+        if (all[i].count > 0 && (all[i].lost || j->session->report->verbose))
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s%s %s%s %s", length > 0 ? ", " : "",
+                                       camber_figure_count(all[i].count).text, all[i].noun, camber_plural(all[i].count),
+                                       all[i].what);
     if (length > 0)
         camber_report_say(j->session->report, "areas: %s", text);
+}
+
+static void print_times(const job *j) {
+    camber_report_say(j->session->report,
+                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
+                      "read back %.1f, write %.1f; in all %.1f ms",
+                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
+                      j->times.frame.read_ms, j->times.write_ms, j->total_ms);
+    camber_session_say_memory(j->session);
 }
 
 static void print_text(const job *j) {
@@ -176,19 +189,18 @@ static void print_text(const job *j) {
     const char *path = session->options->output;
     uint32_t width, height;
     find_size(j, &width, &height);
-    camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,
-                      width, height, scene.zoom, scene.longitude, scene.latitude);
-    print_counts(j, &scene);
+    if (report->verbose)
+        print_counts(j, &scene);
     print_rings(j);
     camber_input_say_missing(&j->input);
     camber_input_say_split(&j->input);
-    camber_report_say(report,
-                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
-                      "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",
-                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
-                      j->times.frame.read_ms, j->times.write_ms, j->total_ms, (double)camber_peak_rss_bytes() / 1e6);
+    if (report->verbose)
+        print_times(j);
     if (j->input.attribution)
         camber_report_say(report, "%s", j->input.attribution);
+    camber_report_done(report, path[0] == '-' && !path[1] ? "picture" : path, j->written_bytes, j->total_ms,
+                       "%s x %s px, zoom %.2f at %.5f, %.5f", camber_figure_count(width).text,
+                       camber_figure_count(height).text, scene.zoom, scene.longitude, scene.latitude);
 }
 
 int camber_verb_render(camber_session *session) {

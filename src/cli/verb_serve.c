@@ -1,9 +1,9 @@
 /* Runs `camber serve`: listens, reads the input, and then waits for signals while the server's threads draw.
  *
- * SIGHUP reads input and style again into a second set, which replaces the first when it is complete. If reading fails,
- * nothing changes. The reading has a thread of its own, which is abandoned if its reader does not end. Both sets share
- * the memory that the run may have. SIGTERM finishes the requests in progress and ends the run; so does the loss of the
- * device. */
+ * Several maps are read one after another, with one budget. SIGHUP reads input and style of each map again into a
+ * second set, which replaces the first when it is complete. If reading fails, nothing changes. The reading has a thread
+ * of its own, which is abandoned if its reader does not end. Both sets share the memory that the run may have. SIGTERM
+ * finishes the requests in progress and ends the run; so does the loss of the device. */
 #define _XOPEN_SOURCE 700
 
 #include "cli/input.h"
@@ -41,6 +41,13 @@ enum { LAST_WAIT_MS = 3000, LAST_WAIT_AT_END_MS = 500 };
 typedef struct reading reading;
 typedef struct rereading rereading;
 
+/* A map: the inputs of one name, and the options with only these inputs. */
+typedef struct served {
+    char name[CAMBER_MAP_NAME_SIZE]; /* "": none */
+    camber_options options;
+    reading *current; /* what is served; NULL: nothing yet */
+} served;
+
 /* Requests that arrive as signals or as changes to the style that is edited. */
 typedef struct wishes {
     pthread_mutex_t mutex;
@@ -54,8 +61,11 @@ typedef struct wishes {
     int failed_pictures; /* failures in a row, counted by the thread that draws */
     bool lost;           /* the device is lost: a reason to stop */
     bool given_up;       /* the current reading takes too much time or memory */
-    reading *current;    /* what is served; NULL: nothing yet */
-    rereading *left;     /* a reading that was given up and has not ended yet; NULL: none */
+    served *maps;        /* map_count of them */
+    const char **names;  /* of the maps */
+    const char **inputs; /* of all maps */
+    size_t map_count;
+    rereading *left; /* a reading that was given up and has not ended yet; NULL: none */
 } wishes;
 
 /* One reading of the input. The first one is on the verb's session, and later ones have sessions of their own. */
@@ -68,6 +78,7 @@ struct reading {
     json_t *about; /* an archive's metadata */
     camber_server_content content;
     char name[256];
+    const served *map;
     wishes *wishes;
 };
 
@@ -158,14 +169,16 @@ static void close_reading(void *owner) {
     free(it);
 }
 
-/* Whether a path is an archive of tiles. An archive of vector tiles is drawn like a map; read_archive detects that. */
-static bool is_archive(const camber_options *options) {
+/* Whether the input is an archive of tiles. An archive of vector tiles is drawn like a map; read_archive detects that.
+ * Options for drawing may be meant for other maps, if there are several. */
+static bool is_archive(const reading *it) {
+    const camber_options *options = it->session->options;
     const char *path = options->input_count ? options->inputs[0] : "";
     struct stat about;
     const char *dot = strrchr(path, '.');
     const bool named = dot && (strcmp(dot, ".pmtiles") == 0 || strcmp(dot, ".mbtiles") == 0);
     const bool folder = stat(path, &about) == 0 && S_ISDIR(about.st_mode) && !(dot && strcmp(dot, ".gdb") == 0);
-    const bool drawn = options->style || options->theme >= 0 || options->layer || options->where;
+    const bool drawn = !*it->map->name && (options->style || options->theme >= 0 || options->layer || options->where);
     return options->input_count == 1 && !drawn && (named || folder);
 }
 
@@ -178,7 +191,7 @@ static const char *source_of(const camber_options *options) {
 static void find_name(reading *it) {
     const camber_options *options = it->session->options;
     const char *path = source_of(options), *slash = strrchr(path, '/');
-    const char *name = slash && slash[1] ? slash + 1 : path;
+    const char *name = *it->map->name ? it->map->name : slash && slash[1] ? slash + 1 : path;
     const size_t length = *name == '.' ? strlen(name) : strcspn(name, "./");
     const char *own = json_string_value(json_object_get(it->about, "name"));
     json_t *text = options->name ? json_string(options->name) : own ? json_string(own) : json_stringn(name, length);
@@ -216,8 +229,8 @@ static void tell_picture(void *owner, camber_status status) {
 static void tell_nothing(const reading *it) {
     char why[1024];
     camber_input_say_missing(&it->input);
-    if (it->session->options->input_count &&
-        !camber_features_explain_nothing(it->input.features, 0, 22, why, sizeof why))
+    if (it->session->options->input_count && !it->content.has_bounds &&
+        !camber_features_explain_nothing(it->input.features, 0, DEEPEST_ZOOM, why, sizeof why))
         camber_report_warn(it->session->report, "nothing is drawn: %s", why);
 }
 
@@ -229,7 +242,6 @@ static int read_map(reading *it) {
         status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    tell_nothing(it);
     it->content.source = (camber_map_source){.features = it->input.features,
                                              .styles = {it->input.style, it->dark},
                                              .simplify_px = options->simplify_px,
@@ -242,6 +254,7 @@ static int read_map(reading *it) {
     it->content.attribution = it->input.attribution;
     it->content.has_bounds = camber_features_get_drawn_bounds(it->input.features, 0, DEEPEST_ZOOM, it->content.bounds);
     it->content.max_zoom = DEEPEST_ZOOM;
+    tell_nothing(it);
     return CAMBER_EXIT_DONE;
 }
 
@@ -287,7 +300,7 @@ static int read_archive(reading *it) {
 static int read_input(reading *it) {
     int status = camber_session_need(it->session, CAMBER_NEEDS_CONTEXT);
     if (status == CAMBER_EXIT_DONE)
-        status = is_archive(it->session->options) ? read_archive(it) : read_map(it);
+        status = is_archive(it) ? read_archive(it) : read_map(it);
     if (status == CAMBER_EXIT_DONE) {
         find_name(it);
         find_time(it);
@@ -313,17 +326,19 @@ static void give_up(void *user) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-/* Prepares another reading. It shares the verb's memory with the content that is served meanwhile. */
+/* Prepares another reading. It shares the verb's memory with all content that is served meanwhile. */
 static void begin_again(reading *it, const camber_session *verb) {
-    const reading *current = it->wishes->current;
+    const wishes *w = it->wishes;
     it->report = (camber_report){.quiet = verb->report->quiet, .verbose = verb->report->verbose, .keeps = true};
-    it->own = (camber_session){.options = verb->options,
-                               .report = &it->report,
-                               .guard = verb->guard,
-                               .whole = verb->budget,
-                               .watch = {.give_up = give_up, .give_up_user = it->wishes}};
-    if (current && current->session == &current->own)
-        it->own.beside_bytes = camber_budget_get_held_bytes(current->own.budget);
+    it->own = (camber_session){
+        .options = &it->map->options, .report = &it->report, .guard = verb->guard, .whole = verb->budget};
+    if (it->map->current)
+        it->own.watch = (camber_watch){.give_up = give_up, .give_up_user = it->wishes};
+    for (size_t i = 0; i < w->map_count; i++) {
+        const reading *current = w->maps[i].current;
+        if (current && current->session == &current->own)
+            it->own.beside_bytes += camber_budget_get_held_bytes(current->own.budget);
+    }
     it->session = &it->own;
 }
 
@@ -378,8 +393,10 @@ static bool join_left(wishes *w) {
 static void explain(const reading *it, bool given_up, int status, char *error, size_t error_size) {
     const char *why = given_up ? it->own.watch.line : it->report.error;
     const bool memory = !given_up && status == CAMBER_EXIT_INTERNAL;
-    snprintf(error, error_size, "%s%.*s%s", memory ? "reading again, while the previous map is served: " : "",
-             (int)error_size - 100, why, memory ? " (--memory)" : "");
+    const char *what = !memory            ? ""
+                       : it->map->current ? "reading again, while the previous map is served: "
+                                          : "reading beside the other maps: ";
+    snprintf(error, error_size, "%s%.*s%s", what, (int)error_size - 100, why, memory ? " (--memory)" : "");
 }
 
 /* Reads on a thread of its own. If it fails, error receives the reason. */
@@ -438,12 +455,15 @@ static uint64_t hash_input(const camber_map_source *source) {
 }
 
 /* Pictures need a renderer, which is opened during the first reading. */
-static int show(camber_session *verb, camber_server *server, wishes *w, bool first) {
+static int show(camber_session *verb, camber_server *server, wishes *w, size_t index) {
+    served *map = w->maps + index;
+    const bool first = !map->current && index == 0;
     reading *it = calloc(1, sizeof *it);
     char error[1024] = "";
     if (!it)
         return camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
     it->wishes = w;
+    it->map = map;
     it->session = verb;
     int status = first ? read_input(it) : read_again(verb, it, error, sizeof error);
     if (first && status != CAMBER_EXIT_DONE) {
@@ -460,13 +480,13 @@ static int show(camber_session *verb, camber_server *server, wishes *w, bool fir
     it->content.source.device = verb->device;
     if (status == CAMBER_EXIT_DONE && !it->reader && verb->options->cache_dir && !verb->options->edit)
         it->content.source.input = hash_input(&it->content.source);
-    if (status == CAMBER_EXIT_DONE && !camber_server_show(server, &it->content))
+    if (status == CAMBER_EXIT_DONE && !camber_server_show(server, (uint32_t)index, &it->content))
         status = camber_report_status(verb->report, CAMBER_ERROR_MEMORY);
     if (status != CAMBER_EXIT_DONE) {
         close_reading(it);
         return status;
     }
-    w->current = it;
+    map->current = it;
     camber_server_tell(server, NULL);
     return CAMBER_EXIT_DONE;
 }
@@ -485,7 +505,7 @@ static void tell_failure(void *user, camber_log_level level, const char *message
         fprintf(stderr, "camber: %s\n", message);
 }
 
-static int listen_there(camber_session *session, camber_server **server, char url[256]) {
+static int listen_there(camber_session *session, const wishes *w, camber_server **server, char url[256]) {
     const camber_options *options = session->options;
     size_t length = options->public_url ? strlen(options->public_url) : 0;
     while (length && options->public_url[length - 1] == '/')
@@ -501,6 +521,10 @@ static int listen_there(camber_session *session, camber_server **server, char ur
                                      .threads = options->threads,
                                      .renderd = options->renderd,
                                      .cache_dir = options->cache_dir,
+                                     .maps = w->names,
+                                     .map_count = (uint32_t)w->map_count,
+                                     .fonts = options->fonts,
+                                     .font_count = options->font_count,
                                      .edits = options->edit != NULL,
                                      .logs_requests = options->verbose,
                                      .log_request = tell_request,
@@ -565,22 +589,32 @@ static void set_begins(wishes *w, bool begins) {
     pthread_mutex_unlock(&w->mutex);
 }
 
+/* Reads each map again. One that fails stays as it is. */
+static void show_again(camber_session *session, camber_server *server, wishes *w) {
+    for (size_t i = 0; i < w->map_count && !w->stop; i++) {
+        const served *map = w->maps + i;
+        const char *equals = *map->name ? "=" : "";
+        if (show(session, server, w, i) == CAMBER_EXIT_DONE)
+            camber_report_say(session->report, "reloaded %s%s%s", map->name, equals, source_of(&map->options));
+        else if (!w->stop && *map->name)
+            camber_report_say(session->report, "still serving the previous map of %s", map->name);
+        else if (!w->stop)
+            camber_report_say(session->report, "still serving the previous map");
+    }
+}
+
 static int serve(camber_session *session, camber_server *server, wishes *w) {
     int status = announce(session, server);
     set_begins(w, true);
-    if (status == CAMBER_EXIT_DONE)
-        status = show(session, server, w, true);
+    for (size_t i = 0; i < w->map_count && status == CAMBER_EXIT_DONE; i++)
+        status = show(session, server, w, i);
     set_begins(w, false);
     if (status != CAMBER_EXIT_DONE)
         return status;
     camber_guard_go_first(session->guard);
     tell_ready(session, server);
-    while (wait_for_wish(w, server)) {
-        if (show(session, server, w, false) == CAMBER_EXIT_DONE)
-            camber_report_say(session->report, "reloaded %s", source_of(session->options));
-        else if (!w->stop)
-            camber_report_say(session->report, "still serving the previous map");
-    }
+    while (wait_for_wish(w, server))
+        show_again(session, server, w);
     if (w->lost)
         return camber_report_fail(
             session->report, CAMBER_EXIT_UNAVAILABLE,
@@ -588,7 +622,67 @@ static int serve(camber_session *session, camber_server *server, wishes *w) {
     return CAMBER_EXIT_DONE;
 }
 
+/* ---- Maps ---- */
+
+static size_t find_map(wishes *w, const char *name, size_t length) {
+    size_t i = 0;
+    while (i < w->map_count && (strlen(w->maps[i].name) != length || memcmp(w->maps[i].name, name, length) != 0))
+        i++;
+    if (i == w->map_count)
+        snprintf(w->maps[w->map_count++].name, CAMBER_MAP_NAME_SIZE, "%.*s", (int)length, name);
+    return i;
+}
+
+/* Takes the options for one map: its own inputs, and for a dark theme the dark theme of what is built in. */
+static void take_options(served *map, const camber_options *options, const char **inputs) {
+    const size_t length = strlen(map->name);
+    const bool is_dark =
+        length >= 4 && strcmp(map->name + length - 4, "dark") == 0 && (length == 4 || map->name[length - 5] == '/');
+    map->options = *options;
+    map->options.inputs = inputs;
+    map->options.input_count = 0;
+    if (is_dark && !options->style)
+        map->options.theme = CAMBER_THEME_DARK;
+    for (size_t i = 0; i < options->input_count; i++) {
+        size_t name_length;
+        const char *path = camber_options_split_input(options->inputs[i], &name_length);
+        if (name_length == length && memcmp(options->inputs[i], map->name, length) == 0)
+            inputs[map->options.input_count++] = path;
+    }
+}
+
+/* Makes the list of maps, in the order in which they are named. Returns false if there is no memory. */
+static bool make_maps(wishes *w, const camber_options *options) {
+    const size_t most = options->input_count + 1;
+    w->maps = calloc(most, sizeof *w->maps);
+    w->names = calloc(most, sizeof *w->names);
+    w->inputs = calloc(most, sizeof *w->inputs);
+    if (!w->maps || !w->names || !w->inputs)
+        return false;
+    if (!options->input_count)
+        (void)find_map(w, "", 0);
+    for (size_t i = 0; i < options->input_count; i++) {
+        size_t length;
+        (void)camber_options_split_input(options->inputs[i], &length);
+        (void)find_map(w, options->inputs[i], length);
+    }
+    const char **inputs = w->inputs;
+    for (size_t i = 0; i < w->map_count; i++) {
+        take_options(w->maps + i, options, inputs);
+        inputs += w->maps[i].options.input_count;
+        w->names[i] = w->maps[i].name;
+    }
+    return true;
+}
+
+static void free_maps(wishes *w) {
+    free(w->maps);
+    free(w->names);
+    free(w->inputs);
+}
+
 int camber_verb_serve(camber_session *session) {
+    const camber_options *options = session->options;
     wishes w = {.guard = session->guard, .edited = session->options->edit};
     camber_server *server = NULL;
     char url[256];
@@ -597,15 +691,26 @@ int camber_verb_serve(camber_session *session) {
     (void)was_saved(&w); /* before reading, so that a change during the reading counts */
     session->opens_beside = true;
     set_heed(session, &w);
-    int status = listen_there(session, &server, url);
+    int status = CAMBER_EXIT_DONE;
+    if (make_maps(&w, options))
+        session->options = &w.maps[0].options;
+    else
+        status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    if (status == CAMBER_EXIT_DONE)
+        status = listen_there(session, &w, &server, url);
     if (status == CAMBER_EXIT_DONE)
         status = serve(session, server, &w);
     camber_server_destroy(server);
+    if (status == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, "serve", 0, camber_session_elapsed_ms(session),
+                           "every request that had begun was answered");
     if (!join_left(&w)) { /* its library cannot be stopped in another way */
         camber_guard_lock(session->guard);
         camber_guard_end(session->guard, status);
     }
     set_heed(session, NULL);
+    session->options = options;
+    free_maps(&w);
     pthread_cond_destroy(&w.changed);
     pthread_mutex_destroy(&w.mutex);
     return status;

@@ -1,3 +1,5 @@
+/* Runs `camber style`: checks a style document, and prints what is wrong with it and what it draws; or evaluates an
+ * expression for given features, and prints the values as JSON. */
 #include "cli/input.h"
 #include "cli/verbs.h"
 
@@ -15,7 +17,10 @@ static int evaluate(camber_session *session, const char *name, const char *bytes
     const camber_status status = camber_style_evaluate(session->context, bytes, size_bytes, name, sink);
     if (status != CAMBER_OK)
         return camber_report_status(session->report, status);
-    return camber_report_flush(session->report);
+    const int printed = camber_report_flush(session->report);
+    if (printed == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, name, 0, camber_session_elapsed_ms(session), "evaluated");
+    return printed;
 }
 
 /* ---- check ---- */
@@ -62,6 +67,15 @@ static void print_text(camber_report *out, const char *name, const camber_style_
     }
 }
 
+static void say_checked(camber_session *session, const char *name, const camber_style_report *report) {
+    size_t layers = 0;
+    for (size_t i = 0; i < report->type_count; i++)
+        layers += report->types[i].layers;
+    camber_report_done(session->report, name, 0, camber_session_elapsed_ms(session),
+                       "no error in %s layer%s, %s warning%s", camber_figure_count(layers).text, camber_plural(layers),
+                       camber_figure_count(report->finding_count).text, camber_plural(report->finding_count));
+}
+
 static int check(camber_session *session, const char *name, const char *bytes, size_t size_bytes) {
     camber_style_report *report = NULL;
     const camber_status status = camber_style_check(session->context, bytes, size_bytes, name, &report);
@@ -76,6 +90,8 @@ static int check(camber_session *session, const char *name, const char *bytes, s
         exit_status = camber_report_fail(session->report, CAMBER_EXIT_DATA, "%s: %zu error%s; correct %s", name,
                                          report->error_count, report->error_count == 1 ? "" : "s",
                                          report->error_count == 1 ? "it" : "them");
+    else if (exit_status == CAMBER_EXIT_DONE)
+        say_checked(session, name, report);
     camber_style_report_destroy(report);
     return exit_status;
 }

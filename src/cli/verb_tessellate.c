@@ -48,7 +48,7 @@ static int write_mesh(job *j) {
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     desc.paints = j->paints;
     desc.areas = &j->areas;
-    camber_report_progress(session->report, "writing", -1);
+    camber_report_step(session->report, "writing", NULL, 0, 0);
     const camber_status status = camber_glb_write(session->context, &j->data, &desc, camber_output_sink(&j->output));
     if (status != CAMBER_OK)
         return camber_output_status(&j->output, status);
@@ -71,7 +71,7 @@ static int run(job *j) {
         status = camber_input_project(&j->input);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_report_progress(session->report, "tessellating", -1);
+    camber_report_step(session->report, "tessellating", NULL, 0, 0);
     const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, NULL, &j->mesh);
     if (made == CAMBER_OK)
@@ -118,28 +118,39 @@ static int print_json(const job *j) {
     return camber_report_json(session->report, object);
 }
 
+/* With --verbose. */
+static void print_counts(const job *j, const camber_scene_info *scene) {
+    camber_report *report = j->session->report;
+    if (j->areas.index_count)
+        camber_report_say(report, "areas: %s vertices, %s triangles", camber_figure_count(j->areas.point_count).text,
+                          camber_figure_count(j->areas.index_count / 3).text);
+    camber_report_say(report, "%s feature%s, %s polyline%s, %s point%s", camber_figure_count(scene->features).text,
+                      camber_plural(scene->features), camber_figure_count(scene->polylines).text,
+                      camber_plural(scene->polylines), camber_figure_count(scene->points).text,
+                      camber_plural(scene->points));
+    camber_report_say(report,
+                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, write %.1f; "
+                      "in all %.1f ms",
+                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms, j->total_ms);
+    camber_session_say_memory(j->session);
+}
+
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
     (void)camber_scene_project(j->input.scene); /* counts are 0 if memory for them is exhausted */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
-    const size_t triangles = j->data.info.triangle_count;
-    camber_report_say(report, "%s: %zu vertices, %zu triangle%s (%s), %zu bytes",
-                      path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count, triangles,
-                      camber_plural(triangles), camber_method_get_name(j->data.info.method), j->written_bytes);
-    if (j->areas.index_count)
-        camber_report_say(report, "areas: %zu vertices, %zu triangles", j->areas.point_count, j->areas.index_count / 3);
-    camber_report_say(report, "%zu feature%s, %zu polyline%s, %zu point%s", scene.features,
-                      camber_plural(scene.features), scene.polylines, camber_plural(scene.polylines), scene.points,
-                      camber_plural(scene.points));
-    camber_report_say(report,
-                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, write %.1f; "
-                      "in all %.1f ms and %.0f MB",
-                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms, j->total_ms,
-                      (double)camber_peak_rss_bytes() / 1e6);
+    const size_t vertices = j->data.info.vertex_count + j->areas.point_count;
+    const size_t triangles = j->data.info.triangle_count + j->areas.index_count / 3;
+    if (report->verbose)
+        print_counts(j, &scene);
     if (j->input.attribution)
         camber_report_say(report, "%s", j->input.attribution);
+    camber_report_done(report, path[0] == '-' && !path[1] ? "mesh" : path, j->written_bytes, j->total_ms,
+                       "%s vertices, %s triangle%s (%s)", camber_figure_count(vertices).text,
+                       camber_figure_count(triangles).text, camber_plural(triangles),
+                       camber_method_get_name(j->data.info.method));
 }
 
 int camber_verb_tessellate(camber_session *session) {

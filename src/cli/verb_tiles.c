@@ -5,7 +5,6 @@
 
 #include "cli/tiles_files.h"
 
-#include <inttypes.h>
 #include <string.h>
 
 /* ---- show ---- */
@@ -55,11 +54,11 @@ static int show_text(camber_report *report, const char *path, const camber_tiles
         printf("bounds      %.7f,%.7f,%.7f,%.7f\n", b[0], b[1], b[2], b[3]);
     if (info->has_center)
         printf("centre      %.7f,%.7f at zoom %.0f\n", c[0], c[1], c[2]);
-    printf("tiles       %" PRIu64 ", in %" PRIu64 " entries, with %" PRIu64 " different contents\n", info->tiles,
-           info->entries, info->contents);
+    printf("tiles       %s, in %s entries, with %s different contents\n", camber_figure_count(info->tiles).text,
+           camber_figure_count(info->entries).text, camber_figure_count(info->contents).text);
     for (size_t i = 0; i < info->zoom_count; i++)
-        printf("  zoom %2d   %12" PRIu64 " tiles %15" PRIu64 " bytes\n", info->zooms[i].zoom, info->zooms[i].tiles,
-               info->zooms[i].size_bytes);
+        printf("  zoom %2d   %13s tiles %19s bytes\n", info->zooms[i].zoom,
+               camber_figure_count(info->zooms[i].tiles).text, camber_figure_count(info->zooms[i].size_bytes).text);
     if (strcmp(info->type, "pbf") == 0)
         printf("schema      %s\n",
                info->schema ? info->schema : "none that the style city knows; its layers are drawn plainly");
@@ -78,6 +77,11 @@ static int show(camber_session *session, const char *path) {
         return camber_report_status(session->report, status);
     const int exit_status =
         session->options->json ? show_json(session->report, info) : show_text(session->report, path, info);
+    uint64_t size_bytes = 0;
+    for (size_t i = 0; i < info->zoom_count; i++)
+        size_bytes += info->zooms[i].size_bytes;
+    if (exit_status == CAMBER_EXIT_DONE)
+        camber_tiles_say_done(session, path, "", info->tiles, size_bytes);
     camber_tiles_info_destroy(info);
     return exit_status;
 }
@@ -110,16 +114,25 @@ static int verify(camber_session *session, const char *path) {
         camber_report_say(report, "%s: %s: %s", path, found->findings[i].error ? "error" : "warning",
                           found->findings[i].message);
     if (exit_status == CAMBER_EXIT_DONE && found->count)
-        exit_status =
-            camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %zu problem%s found%s; rebuild the archive%s", path,
-                               found->count + found->left_out, camber_plural(found->count + found->left_out),
-                               found->left_out ? ", the first of each kind listed" : "",
-                               broken ? "" : ", or rewrite it with camber tiles merge");
+        exit_status = camber_report_fail(report, CAMBER_EXIT_CHECK, "%s: %s problem%s found%s; rebuild the archive%s",
+                                         path, camber_figure_count(found->count + found->left_out).text,
+                                         camber_plural(found->count + found->left_out),
+                                         found->left_out ? ", the first of each kind listed" : "",
+                                         broken ? "" : ", or rewrite it with camber tiles merge");
+    if (exit_status == CAMBER_EXIT_DONE)
+        camber_tiles_say_done(session, path, "no problem found in ", found->tiles, found->size_bytes);
     camber_tiles_findings_destroy(found);
     return exit_status;
 }
 
 /* ---- merge ---- */
+
+static void say_merged(camber_session *session) {
+    const size_t parts = session->options->input_count - 1;
+    char what[96];
+    snprintf(what, sizeof what, "%s part%s with ", camber_figure_count(parts).text, camber_plural(parts));
+    camber_tiles_say_done(session, session->options->output, what, 0, 0);
+}
 
 static int merge(camber_session *session) {
     const camber_options *options = session->options;
@@ -133,6 +146,9 @@ static int merge(camber_session *session) {
                                           options->force,      camber_tiles_files_guard, &files};
     const camber_status status = camber_tiles_merge(session->context, &desc);
     camber_tiles_files_release(&files);
+    camber_report_erase_bar(session->report);
+    if (status == CAMBER_OK)
+        say_merged(session);
     return camber_report_status(session->report, status);
 }
 

@@ -401,41 +401,73 @@ static void warn_left_out(const job *j) {
                            count == 1 ? "is" : "are");
 }
 
-static void print_text(const job *j) {
+/* With --verbose. */
+static void print_times(const job *j) {
     const camber_tiles_stats *stats = &j->stats;
     camber_report *report = j->session->report;
-    if (stats->done) {
-        camber_report_say(report, "%s: is complete; nothing to %s", j->output,
-                          j->session->options->renewed ? "renew" : "do");
-        return;
-    }
-    const bool dry = j->session->options->dry_run;
-    char size[64] = "";
-    if (!dry || !j->session->options->schedule) /* a dry run for a schedule draws no samples */
-        snprintf(size, sizeof size, ", %s%.1f MB", dry ? "about " : "", (double)stats->bytes / 1e6);
-    camber_report_say(report, "%s: %s%llu tile%s in %llu metatile%s, %llu points%s", j->output,
-                      dry ? "would have " : "", (unsigned long long)stats->tiles, camber_plural((size_t)stats->tiles),
-                      (unsigned long long)stats->units, camber_plural((size_t)stats->units),
-                      (unsigned long long)stats->points, size);
+    camber_report_say(report, "%s metatile%s, %s points", camber_figure_count(stats->units).text,
+                      camber_plural((size_t)stats->units), camber_figure_count(stats->points).text);
+    camber_report_say(report,
+                      "load %.2f s, census %.2f, networks %.2f, draw %.2f, wait %.2f, write %.2f; in all %.2f s; "
+                      "encoding took %.2f of %.2f s of all processors",
+                      1e-3 * j->load_ms, 1e-3 * stats->census_ms, 1e-3 * stats->make_ms, 1e-3 * stats->draw_ms,
+                      1e-3 * stats->wait_ms, 1e-3 * stats->write_ms, 1e-3 * j->total_ms, 1e-3 * stats->encode_cpu_ms,
+                      1e-3 * cpu_ms());
+    camber_session_say_memory(j->session);
+}
+
+static void print_counts(const job *j) {
+    const camber_tiles_stats *stats = &j->stats;
+    camber_report *report = j->session->report;
     camber_input_say_missing(&j->input);
     camber_input_say_split(&j->input);
     if (stats->emptied)
-        camber_report_say(report, "%llu tile%s removed, because nothing is there now",
-                          (unsigned long long)stats->emptied, camber_plural((size_t)stats->emptied));
+        camber_report_say(report, "%s tile%s removed, because nothing is there now",
+                          camber_figure_count(stats->emptied).text, camber_plural((size_t)stats->emptied));
     if (stats->relabelled)
-        camber_report_say(report, "%llu tile%s of these not listed, but with other labels than before",
-                          (unsigned long long)stats->relabelled, camber_plural((size_t)stats->relabelled));
+        camber_report_say(report, "%s tile%s of these not listed, but with other labels than before",
+                          camber_figure_count(stats->relabelled).text, camber_plural((size_t)stats->relabelled));
     if (stats->resumed)
-        camber_report_say(report, "%llu metatile%s had been drawn before", (unsigned long long)stats->resumed,
+        camber_report_say(report, "%s metatile%s had been drawn before", camber_figure_count(stats->resumed).text,
                           camber_plural((size_t)stats->resumed));
-    if (!report->verbose)
+    if (report->verbose)
+        print_times(j);
+}
+
+/* An estimate has two digits. */
+static uint64_t round_bytes(uint64_t bytes) {
+    uint64_t step = 1;
+    while (bytes / step >= 100)
+        step *= 10;
+    return (bytes + step / 2) / step * step;
+}
+
+static void print_text(const job *j) {
+    const camber_tiles_stats *stats = &j->stats;
+    const camber_options *options = j->session->options;
+    camber_report *report = j->session->report;
+    char what[96] = "";
+    if (stats->done) {
+        camber_report_done(report, j->output, 0, j->total_ms, "is complete; nothing to %s",
+                           options->renewed ? "renew" : "do");
         return;
-    camber_report_say(report,
-                      "load %.2f s, census %.2f, networks %.2f, draw %.2f, wait %.2f, write %.2f; in all %.2f s and "
-                      "%.0f MB; encoding took %.2f of %.2f s of all processors",
-                      1e-3 * j->load_ms, 1e-3 * stats->census_ms, 1e-3 * stats->make_ms, 1e-3 * stats->draw_ms,
-                      1e-3 * stats->wait_ms, 1e-3 * stats->write_ms, 1e-3 * j->total_ms,
-                      (double)camber_peak_rss_bytes() / 1e6, 1e-3 * stats->encode_cpu_ms, 1e-3 * cpu_ms());
+    }
+    print_counts(j);
+    if (options->dry_run) {
+        char size[96] = "";
+        if (!options->schedule) /* a dry run for a schedule draws no samples */
+            snprintf(size, sizeof size, ", about %s", camber_figure_bytes(round_bytes(stats->bytes)).text);
+        camber_report_done(report, j->output, 0, j->total_ms,
+                           "would have at most %s tile%s in %s metatile%s, %s points%s; dry run",
+                           camber_figure_count(stats->tiles).text, camber_plural((size_t)stats->tiles),
+                           camber_figure_count(stats->units).text, camber_plural((size_t)stats->units),
+                           camber_figure_count(stats->points).text, size);
+        return;
+    }
+    if (options->renewed || stats->resumed)
+        snprintf(what, sizeof what, "%s tile%s drawn, now ", camber_figure_count(stats->tiles).text,
+                 camber_plural((size_t)stats->tiles));
+    camber_tiles_say_done(j->session, j->output, what, stats->tiles, stats->bytes);
 }
 
 int camber_verb_tiles_draw(camber_session *session) {

@@ -5,8 +5,6 @@
 #include "cli/results_text.h"
 #include "cli/verbs.h"
 
-#include <unistd.h>
-
 typedef struct run {
     camber_session *session;
     camber_input input;
@@ -30,21 +28,24 @@ static camber_status write_image(void *user, const camber_failure_image *image, 
     return camber_failure_folder_write(&r->folder, image, path);
 }
 
-static void show_progress(void *user, double fraction) {
+/* How long the checks of one input take is not known. */
+static void show_progress(void *user, size_t done, size_t count) {
     const run *r = user;
-    camber_report_progress(r->session->report, "checking", fraction);
+    if (count > 1)
+        camber_report_step(r->session->report, "checking", "scenes", done, count);
+    else
+        camber_report_step(r->session->report, "checking", NULL, 0, 0);
 }
 
 /* ---- The input of the checks ---- */
 
 static camber_validation_desc describe(run *r) {
     const camber_options *options = r->session->options;
-    const bool bars = options->json || !isatty(STDOUT_FILENO); /* lines of TAP already show the progress */
     return (camber_validation_desc){
         .context = r->session->context,
         .host = {.take_message = take_message,
                  .write_image = options->pictures ? write_image : NULL,
-                 .progress = bars ? show_progress : NULL,
+                 .progress = show_progress,
                  .user = r},
         .listener = options->json ? (camber_results_listener){0} : camber_tap_listener(&r->tap),
         .match = options->device,
@@ -125,7 +126,7 @@ static int check(run *r) {
     camber_session *session = r->session;
     const camber_options *options = session->options;
     if (!options->json)
-        camber_tap_open(&r->tap, options->verbose);
+        camber_tap_open(&r->tap, options->verbose, session->report);
     const camber_validation_desc desc = describe(r);
     camber_validation_input input = {0};
     const bool given = is_given(options);
@@ -156,14 +157,16 @@ static int print(run *r) {
     return status == CAMBER_EXIT_DONE && results->failed ? CAMBER_EXIT_CHECK : status;
 }
 
-static void say_what_was_left(const run *r) {
+static void say_done(const run *r) {
     const camber_results *results = &r->validation.results;
-    camber_report_say(
-        r->session->report, "%zu checks in %.0f s: %zu failed, %zu skipped%s", results->count,
-        (camber_now_ms() - r->session->start_ms) / 1e3, results->failed, results->skipped,
-        r->session->options->full
-            ? ""
-            : "; --full draws by every method, with every join and cap on each back end, and with 1, 8 and 16 lanes");
+    camber_report *report = r->session->report;
+    if (!r->session->options->full)
+        camber_report_say(report, "--full draws by every method, with every join and cap on each back end, and with 1, "
+                                  "8 and 16 lanes");
+    camber_report_done(report, "validate", 0, camber_session_elapsed_ms(r->session),
+                       "%s check%s, %s failed, %s skipped", camber_figure_count(results->count).text,
+                       camber_plural(results->count), camber_figure_count(results->failed).text,
+                       camber_figure_count(results->skipped).text);
 }
 
 int camber_verb_validate(camber_session *session) {
@@ -174,7 +177,7 @@ int camber_verb_validate(camber_session *session) {
     if (status == CAMBER_EXIT_DONE)
         status = print(&r);
     if (r.validation.devices.count && (status == CAMBER_EXIT_DONE || status == CAMBER_EXIT_CHECK))
-        say_what_was_left(&r);
+        say_done(&r);
     camber_validation_close(&r.validation);
     camber_input_close(&r.input);
     camber_output_discard(&r.junit);

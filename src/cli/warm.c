@@ -41,7 +41,7 @@ static void warm_side_by_side(camber_session *session) {
         processes[i] = shares > 1 ? start_share(session, i, shares) : -1;
     for (unsigned i = 0; i < shares; i++) {
         int how;
-        camber_report_progress(session->report, "compiling", (double)i / shares);
+        camber_report_step(session->report, "compiling", "processes", i, shares);
         if (processes[i] > 0)
             waitpid(processes[i], &how, 0);
     }
@@ -77,7 +77,12 @@ int camber_warm(camber_session *session) {
     const double ms = camber_now_ms() - begin_ms;
     if (session->options->json)
         return camber_report_json(session->report, describe(session, &result, ms));
-    printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", result.programs,
-           camber_device_get_info(session->device).name, ms / 1e3, is_fixed ? "part of the library" : result.folder);
-    return camber_report_flush(session->report);
+    printf("kernels   %zu programs for %s, ready in %s\n          %s\n", result.programs,
+           camber_device_get_info(session->device).name, camber_figure_time(ms).text,
+           is_fixed ? "part of the library" : result.folder);
+    const int printed = camber_report_flush(session->report);
+    if (printed == CAMBER_EXIT_DONE)
+        camber_report_done(session->report, "info", 0, camber_session_elapsed_ms(session),
+                           "%zu of %zu programs compiled", result.built, result.programs);
+    return printed;
 }

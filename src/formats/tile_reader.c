@@ -30,7 +30,7 @@ static void show_progress(reader *self, size_t done) {
     if (now - self->shown_ms < PROGRESS_MS)
         return;
     self->shown_ms = now;
-    camber_progress(self->context, "reading", (double)done / (double)self->reading->address_count);
+    camber_progress_count(self->context, "reading", "tiles", done, self->reading->address_count);
 }
 
 static camber_status read_tile_at(reader *self, const camber_tile_address *address) {

@@ -299,14 +299,18 @@ static camber_status fail_stream(reader *self, const char *cause) {
                        self->desc->path, self->read, cause);
 }
 
-static void show_progress(reader *self, double fraction) {
+/* expected: how many features there are; 0 if unknown. */
+static void show_progress(reader *self, double fraction, uint64_t expected) {
     if (self->read % PROGRESS_FEATURES)
         return;
     const double now = camber_now_ms();
     if (now - self->shown_ms < PROGRESS_MS)
         return;
     self->shown_ms = now;
-    camber_progress(self->context, "reading", fraction);
+    camber_progress_tell(
+        self->context,
+        &(camber_progress_info){
+            .stage = "reading", .fraction = fraction, .unit = "features", .done = self->read, .total = expected});
 }
 
 /* Reports progress while OpenStreetMap's nodes are read, which are not features. */
@@ -352,13 +356,13 @@ static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) 
         if (!feature)
             break;
         if (status == CAMBER_OK) {
-            if (!self->dataset.osm && expected > 0)
-                fraction = fmin((double)++self->read / (double)expected, 1);
-            else
-                self->read++;
+            self->read++;
+            const bool counted = !self->dataset.osm && expected > 0 && self->read <= (size_t)expected;
+            if (counted)
+                fraction = (double)self->read / (double)expected;
             self->passed++;
             status = read_feature(self, feature, failed);
-            show_progress(self, fraction);
+            show_progress(self, fraction, counted ? (uint64_t)expected : 0);
         }
         OGR_F_Destroy(feature);
     }

@@ -30,6 +30,8 @@ static bool draws_at(const camber_features *features, const camber_feature_class
 
 bool camber_plan_draws(const camber_features *features, const camber_feature_class *class, double min_zoom,
                        double max_zoom) {
+    if (camber_geometry_is_label(class->geometry))
+        return false;
     bool any = draws_at(features, class, max_zoom);
     for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
         any = draws_at(features, class, zoom);
@@ -46,7 +48,7 @@ static bool labels_at(const camber_features *features, const camber_feature_clas
 /* Whether features of the class have labels at any of the zooms, if labels are drawn. */
 static bool labels(const camber_features *features, const camber_feature_class *class, double min_zoom,
                    double max_zoom) {
-    if (!features->fonts || !camber_geometry_is_label(class->geometry))
+    if (!features->fonts || !class->labelled || !camber_geometry_is_label(class->geometry))
         return false;
     bool any = labels_at(features, class, max_zoom);
     for (double zoom = min_zoom; zoom < max_zoom && !any; zoom += 1.0)
@@ -56,38 +58,54 @@ static bool labels(const camber_features *features, const camber_feature_class *
 
 /* ---- The box ---- */
 
-static void add_polyline(const camber_features *features, size_t polyline, double shift, camber_box *box) {
+static camber_box box_of(const camber_features *features, size_t polyline) {
+    camber_box box = CAMBER_BOX_EMPTY;
     for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++)
         if (isfinite(features->points[2 * i]) && isfinite(features->points[2 * i + 1]))
-            camber_box_add(box, features->points[2 * i] + shift, features->points[2 * i + 1]);
+            camber_box_add(&box, features->points[2 * i], features->points[2 * i + 1]);
+    return box;
 }
 
-/* Whether the polyline is in the western half of the world. */
-static bool is_western(const camber_features *features, size_t polyline) {
-    camber_box box = CAMBER_BOX_EMPTY;
-    add_polyline(features, polyline, 0.0, &box);
-    return 0.5 * (box.x0 + box.x1) < 0.5;
+static bool contains(const camber_box *box, const camber_box *other) {
+    return other->x0 >= box->x0 && other->y0 >= box->y0 && other->x1 <= box->x1 && other->y1 <= box->y1;
 }
 
+static void join(camber_box *box, const camber_box *other) {
+    camber_box_add(box, other->x0, other->y0);
+    camber_box_add(box, other->x1, other->y1);
+}
+
+/* A class is tested only if one of its polylines makes the box larger. */
 camber_status camber_plan_drawn_box(const camber_features *features, double min_zoom, double max_zoom,
                                     camber_box *box) {
+    enum { UNKNOWN, DRAWN, HIDDEN };
     camber_box moved = CAMBER_BOX_EMPTY; /* with the western half of the world moved east of the eastern half */
-    bool *drawn = camber_alloc_zero(features->context, features->class_count, sizeof *drawn);
+    uint8_t *states = camber_alloc_zero(features->context, features->class_count, sizeof *states);
     *box = CAMBER_BOX_EMPTY;
-    if (!drawn)
+    if (!states)
         return CAMBER_ERROR_MEMORY;
-    for (size_t c = 0; c < features->class_count; c++)
-        drawn[c] = camber_plan_draws(features, features->classes + c, min_zoom, max_zoom) ||
-                   labels(features, features->classes + c, min_zoom, max_zoom);
     for (size_t p = 0; p < features->polyline_count && features->points; p++) {
-        if (!drawn[features->feature_class[features->polyline_feature[p]]])
+        const uint32_t class = features->feature_class[features->polyline_feature[p]];
+        if (states[class] == HIDDEN)
             continue;
-        add_polyline(features, p, 0.0, box);
-        add_polyline(features, p, is_western(features, p) ? 1.0 : 0.0, &moved);
+        const camber_box own = box_of(features, p);
+        const double shift = 0.5 * (own.x0 + own.x1) < 0.5 ? 1.0 : 0.0;
+        const camber_box own_moved = {own.x0 + shift, own.y0, own.x1 + shift, own.y1};
+        if (own.x0 > own.x1 || (contains(box, &own) && contains(&moved, &own_moved)))
+            continue;
+        if (states[class] == UNKNOWN)
+            states[class] = camber_plan_draws(features, features->classes + class, min_zoom, max_zoom) ||
+                                    labels(features, features->classes + class, min_zoom, max_zoom)
+                                ? DRAWN
+                                : HIDDEN;
+        if (states[class] == HIDDEN)
+            continue;
+        join(box, &own);
+        join(&moved, &own_moved);
     }
     if (moved.x1 - moved.x0 < box->x1 - box->x0)
         *box = moved;
-    camber_free(features->context, drawn);
+    camber_free(features->context, states);
     return CAMBER_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "map/label_layout.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static const double PI = 3.14159265358979323846;
 /* In MapLibre, text has its baseline this far above the middle of its line, em. */
@@ -154,7 +155,6 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
     made.symbol.icon_image = NULL;
     made.symbol.section_count = 0;
     made.symbol.sort_key = 0.0;
-    made.hash = camber_hash(CAMBER_HASH_START, &made.symbol, sizeof made.symbol);
     camber_status status = make_rule(layout, symbol, &made);
     const camber_label_look look = icon && icon->sdf ? look_of(&symbol->icon, made.icon_flat, layout->view->ratio)
                                                      : plain_look(&symbol->icon, made.icon_flat);
@@ -163,7 +163,7 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
     if (status != CAMBER_OK)
         return status;
     for (size_t i = layout->rule_count; i-- > 0 && i + RULES_COMPARED >= layout->rule_count;) {
-        if (memcmp(layout->rules + i, &made, sizeof made) == 0) {
+        if (memcmp(layout->rules + i, &made, offsetof(camber_label_rule, hash)) == 0) {
             *index = (uint32_t)i;
             return CAMBER_OK;
         }
@@ -171,6 +171,7 @@ static camber_status find_rule(camber_label_layout *layout, const camber_symbol 
     if (!camber_grow(layout->context, &layout->rules, &layout->rule_capacity, layout->rule_count + 1,
                      sizeof *layout->rules))
         return CAMBER_ERROR_MEMORY;
+    made.hash = camber_hash(CAMBER_HASH_START, &made.symbol, sizeof made.symbol);
     memcpy(layout->rules + layout->rule_count, &made, sizeof made);
     *index = (uint32_t)layout->rule_count++;
     return CAMBER_OK;

@@ -12,6 +12,7 @@
 #include "text/number_map.h"
 
 #define CAMBER_NO_PATH UINT32_MAX
+#define CAMBER_NO_FORM UINT32_MAX
 /* Labels collide up to this far outside the picture, in CSS px, so that they seldom change while a map moves. */
 #define CAMBER_LABEL_MARGIN_PX 100.0
 
@@ -30,7 +31,7 @@ typedef struct camber_label_rule {
     double offsets_em[CAMBER_SYMBOL_ANCHORS_MAX][2];
     size_t anchor_count;
     bool variable; /* texts are shaped about their centres */
-    uint64_t hash; /* of the symbol, without the sections of its text */
+    uint64_t hash; /* the last member, which the others decide: of the symbol, without the sections of its text */
 } camber_label_rule;
 
 /* How a run of a text is drawn. */
@@ -135,6 +136,8 @@ typedef struct camber_label_layout {
     size_t line_count, line_capacity;
     float *line_points; /* pairs, relative to their lines' points */
     size_t line_point_count, line_point_capacity;
+    uint32_t too_far; /* in a domain: the form of a label that is left out because it reaches too far; CAMBER_NO_FORM */
+    size_t too_far_layer;             /* of the style */
     struct camber_label_words *words; /* texts that were shaped (label_text.c) */
     bool keeps_forms;                 /* it is made for several views, so that it keeps the following */
     uint32_t **known_forms; /* known_count tables by layer of the style: the forms of classes, NULL: none yet */
@@ -158,7 +161,6 @@ camber_box camber_label_seen(const camber_view *view);
 /* ---- Forms (label_forms.c, label_text.c) ---- */
 
 /* Makes the form that a layer's labels of a class have. *form is CAMBER_NO_FORM if they show nothing. */
-#define CAMBER_NO_FORM UINT32_MAX
 camber_status camber_label_form_make(camber_label_layout *layout, const camber_layer_look *look,
                                      const camber_feature_class *class, uint32_t *form);
 /* Shapes a form's texts, or takes them from the table if they were shaped before. */

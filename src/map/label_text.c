@@ -4,6 +4,7 @@
  * more than names, so the name of one street is needed again and again; a table keeps the texts that were shaped. */
 #include "map/label_layout.h"
 #include "style/unicode.h"
+#include "text/fonts.h"
 
 #include <stdlib.h>
 
@@ -189,7 +190,8 @@ static camber_status shape(camber_label_layout *layout, const camber_text_desc *
         if (!key || !camber_grow(context, &words->items, &words->capacity, words->count + 1, sizeof *words->items))
             return camber_fail(context, CAMBER_ERROR_MEMORY, "labels: no memory for their texts");
         camber_text *made = NULL;
-        const camber_status status = camber_text_shape(layout->fonts, desc, &made);
+        const camber_text_key all = {words->key, words->key_size, hash};
+        const camber_status status = camber_text_recall(layout->fonts, &all, desc, &made);
         if (status != CAMBER_OK)
             return status;
         char *copy = copy_said(context, desc);

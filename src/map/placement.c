@@ -44,6 +44,7 @@ typedef struct placer {
     camber_collision doubts;
     said_list doubtful;
     bool in_doubt;
+    bool too_far; /* a shape of the current label reaches too far */
 } placer;
 
 /* A part of a label, as it would be placed. */
@@ -231,6 +232,7 @@ static camber_status put_shape(placer *p, const camber_label_candidate *c, bool 
         shape = (camber_obstacle){camber_label_snap(shape.x0), camber_label_snap(shape.y0), camber_label_snap(shape.x1),
                                   camber_label_snap(shape.y1), camber_label_snap(shape.radius)};
         *added = !reaches_too_far(p, &shape, camber_label_margin(p->layout, c->form, of_text));
+        p->too_far |= !*added;
         if (!*added)
             return CAMBER_OK;
         shape.x0 += c->x;
@@ -484,7 +486,7 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     tried text, icon;
     c->box = CAMBER_BOX_EMPTY;
     p->shape_count = 0;
-    p->in_doubt = false;
+    p->in_doubt = p->too_far = false;
     if (!(camber_label_nearness(p->layout, c) > 0.0) || (near > 0.0 && is_repeated(p, c, near)))
         return CAMBER_OK;
     camber_status status = try_text(p, c, &text);
@@ -493,6 +495,8 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     if (status != CAMBER_OK)
         return status;
     agree(form, s, &text, &icon);
+    if (p->too_far && !text.placed && !icon.placed)
+        p->layout->too_far = c->form;
     if (p->in_doubt && !is_hidden(rule, &text, &icon))
         return take_doubtful(p, c, near);
     if (text.placed)
@@ -518,10 +522,13 @@ static void forget_words(said_list *list) {
 static camber_status place_layer(placer *p, const camber_layout_layer *layer) {
     ordered *list = sort_layer(p->layout, layer);
     camber_status status = list ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    const uint32_t before = p->layout->too_far;
     forget_words(&p->said);
     forget_words(&p->doubtful);
     for (size_t i = 0; i < layer->candidate_count && status == CAMBER_OK; i++)
         status = place_one(p, p->layout->candidates + (list[i].candidate - p->layout->candidates));
+    if (p->layout->too_far != before)
+        p->layout->too_far_layer = layer->layer;
     camber_free(p->layout->context, list);
     return status;
 }
@@ -541,6 +548,7 @@ static camber_box find_bounds(const camber_label_layout *layout) {
 camber_status camber_label_place_all(camber_label_layout *layout) {
     camber_context *context = layout->context;
     placer p = {.layout = layout, .domain = layout->domain, .track.context = context};
+    layout->too_far = CAMBER_NO_FORM;
     if (layout->candidate_count == 0)
         return CAMBER_OK;
     const camber_box bounds = find_bounds(layout);

@@ -58,19 +58,22 @@ static camber_plan_part part_of(const camber_style_layer *layer) {
 
 bool camber_plan_labels(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class) {
+    if (layer->kind != CAMBER_LAYER_SYMBOL || !class->labelled || !camber_plan_comes_to(features, layer, class))
+        return false;
     const camber_feature_view feature = camber_plan_view_of(features, class);
-    return layer->kind == CAMBER_LAYER_SYMBOL && class->labelled && camber_plan_comes_to(features, layer, class) &&
-           camber_style_layer_matches(layer, zoom, &feature);
+    return camber_style_layer_matches(layer, zoom, &feature);
 }
 
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class) {
-    const camber_feature_view feature = camber_plan_view_of(features, class);
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
     const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
                       (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
-    return layer->kind != CAMBER_LAYER_BACKGROUND && layer->kind != CAMBER_LAYER_SYMBOL && fits &&
-           camber_plan_comes_to(features, layer, class) && camber_style_layer_matches(layer, zoom, &feature);
+    if (layer->kind == CAMBER_LAYER_BACKGROUND || layer->kind == CAMBER_LAYER_SYMBOL || !fits ||
+        !camber_plan_comes_to(features, layer, class))
+        return false;
+    const camber_feature_view feature = camber_plan_view_of(features, class);
+    return camber_style_layer_matches(layer, zoom, &feature);
 }
 
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,

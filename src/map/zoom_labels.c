@@ -20,10 +20,16 @@
 static const double WORLD_PX = 512.0;
 /* The margin that is tried first, and how much wider each next one is. */
 static const double FIRST_MARGIN_PX = 1.75 * CAMBER_LABEL_REACH_PX, WIDER = 2.0;
+/* The width of blocks where several small ones are wanted: with the first margin, 2.1 times its area is placed, but of
+ * a tile of 256 px 64 times. */
+static const double GROWN_PX = 4096.0;
+/* About the memory that a label takes which is kept. */
+enum { LABEL_BYTES = 1024 };
 
-typedef struct label_block label_block;
-struct label_block {
+typedef struct camber_label_block label_block;
+struct camber_label_block {
     label_block *next; /* less recently used */
+    const camber_zoom_labels *owner;
     camber_label_square square;
     camber_box box; /* of the square, or of a picture, px of the world */
     camber_label_domain domain;
@@ -35,10 +41,11 @@ struct camber_zoom_labels {
     camber_context *context;
     camber_zoom_labels_desc desc;
     camber_view view; /* its px are those of the world */
-    label_block *blocks;
 };
 
 camber_status camber_zoom_labels_create(const camber_zoom_labels_desc *desc, camber_zoom_labels **labels) {
+    if (desc->shelf && camber_label_things_make_tree(desc->things) != CAMBER_OK)
+        return CAMBER_ERROR_MEMORY;
     camber_zoom_labels *made = camber_alloc_zero(desc->features->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -58,9 +65,15 @@ static void free_block(label_block *block) {
 void camber_zoom_labels_destroy(camber_zoom_labels *labels) {
     if (!labels)
         return;
-    for (label_block *block = labels->blocks, *next; block; block = next) {
-        next = block->next;
-        free_block(block);
+    for (label_block **at = labels->desc.shelf ? &labels->desc.shelf->blocks : NULL; at && *at;) {
+        label_block *block = *at;
+        if (block->owner == labels) {
+            *at = block->next;
+            labels->desc.shelf->held_bytes -= block->bytes;
+            free_block(block);
+        } else {
+            at = &block->next;
+        }
     }
     camber_free(labels->context, labels);
 }
@@ -116,8 +129,8 @@ static camber_box find_pixels(camber_label_layout *layout, const camber_label_ca
 
 /* ---- Placing a block ---- */
 
-/* Whether all labels that may touch the block are settled. */
-static bool is_settled(label_block *block) {
+/* Whether all labels that may touch a box in the block's surroundings are settled. */
+static bool is_settled(label_block *block, const camber_box *box) {
     camber_label_layout *l = &block->layout;
     for (size_t i = 0; i < l->candidate_count; i++) {
         const camber_label_candidate *c = l->candidates + i;
@@ -126,29 +139,48 @@ static bool is_settled(label_block *block) {
         camber_label_candidate all = *c;
         all.shows_text = l->forms[c->form].text != NULL;
         all.shows_icon = l->forms[c->form].icon != NULL;
-        const camber_box box = find_pixels(l, &all);
-        if (find_copies(block, &box, &block->box))
+        const camber_box pixels = find_pixels(l, &all);
+        if (find_copies(block, &pixels, box))
             return false;
     }
     return true;
 }
 
+/* Warns once of labels that are left out because they reach too far, which does not surprise where the world is small.
+ */
+static void tell_too_far(const camber_zoom_labels *z, const camber_label_layout *l) {
+    if (l->too_far == CAMBER_NO_FORM || z->desc.things->told_too_far || z->view.scale_px < 2.0 * CAMBER_LABEL_REACH_PX)
+        return;
+    const char *words = l->forms[l->too_far].words;
+    camber_log(
+        z->context, CAMBER_LOG_WARNING,
+        "labels: %s of layer %s reaches more than %g px from its anchor and is left out, as all such labels are; "
+        "make it smaller or its halo thinner, or break it into lines",
+        words ? words : "an icon", l->features->style->layers[l->too_far_layer].id, CAMBER_LABEL_REACH_PX);
+    z->desc.things->told_too_far = true;
+}
+
+/* Selects the things that may have labels in a block's surroundings, unless these are all things, or go around the
+ * world. Then the domain is the whole world. */
+static camber_status find_domain(const camber_zoom_labels *z, const camber_box *known, camber_label_domain *domain,
+                                 camber_label_things *near) {
+    const double world = z->view.scale_px;
+    *domain = (camber_label_domain){.known = *known, .world_px = world};
+    *near = (camber_label_things){0};
+    if (known->x1 - known->x0 + 2.0 * CAMBER_LABEL_REACH_PX <= world) {
+        const camber_box seen = scale(known, 1.0 / world);
+        const camber_status status = camber_label_things_select(z->desc.things, &seen, near);
+        if (status != CAMBER_OK || near->count < z->desc.things->count)
+            return status;
+    }
+    *domain = (camber_label_domain){.known = {0.0, -INFINITY, world, INFINITY}, .whole = true, .world_px = world};
+    return CAMBER_OK;
+}
+
 static camber_status place_with_margin(camber_zoom_labels *z, label_block *block, double margin_px, bool *settled) {
     const camber_box known = widen(&block->box, margin_px);
-    const double world = z->view.scale_px;
-    camber_label_things near = {0};
-    block->domain = (camber_label_domain){.known = known, .world_px = world};
-    if (known.x1 - known.x0 + 2.0 * CAMBER_LABEL_REACH_PX > world) {
-        block->domain.known = (camber_box){0.0, -INFINITY, world, INFINITY};
-        block->domain.whole = true;
-    } else {
-        const camber_box seen = scale(&known, 1.0 / world);
-        const camber_status status = camber_label_things_select(z->desc.things, &seen, &near);
-        if (status != CAMBER_OK) {
-            camber_label_things_free(&near);
-            return status;
-        }
-    }
+    camber_label_things near;
+    camber_status status = find_domain(z, &known, &block->domain, &near);
     camber_label_layout_free(&block->layout);
     block->layout = (camber_label_layout){
         .context = z->context,
@@ -156,19 +188,51 @@ static camber_status place_with_margin(camber_zoom_labels *z, label_block *block
         .view = &z->view,
         .things = block->domain.whole ? z->desc.things : &near,
         .domain = &block->domain,
-        .least_importance = (double)(float)fmax(CAMBER_LABEL_SIMPLIFY_PX / world, z->desc.least_importance),
+        .least_importance = (double)(float)fmax(CAMBER_LABEL_SIMPLIFY_PX / z->view.scale_px, z->desc.least_importance),
         .fonts = z->desc.features->fonts,
         .sprites = z->desc.features->sprites};
-    camber_status status = camber_label_layout_make(&block->layout);
+    if (status == CAMBER_OK)
+        status = camber_label_layout_make(&block->layout);
     if (status == CAMBER_OK)
         status = camber_label_place_all(&block->layout);
     block->layout.things = NULL;
     camber_label_things_free(&near);
-    *settled = status == CAMBER_OK && is_settled(block);
+    if (status == CAMBER_OK)
+        tell_too_far(z, &block->layout);
+    *settled = status == CAMBER_OK && is_settled(block, &block->box);
     return status;
 }
 
 /* ---- Keeping what is shown ---- */
+
+/* Whether a shelf has room for the shown labels that touch a box, together with as many others. */
+static bool has_room(const camber_label_shelf *shelf, label_block *block, const camber_box *box) {
+    const camber_label_layout *l = &block->layout;
+    size_t bytes = 0;
+    for (size_t i = 0; i < l->candidate_count; i++) {
+        const camber_label_candidate *c = l->candidates + i;
+        if ((c->shows_text || c->shows_icon) && find_copies(block, &c->box, box))
+            bytes += LABEL_BYTES;
+    }
+    return bytes <= shelf->limit_bytes / 2;
+}
+
+/* Gives the block the largest square around its own whose labels are settled, too. So labels that depend on each other
+ * far across the map, which need a wide margin, are not placed again for each of the blocks there. */
+static void widen_block(const camber_zoom_labels *z, label_block *block, const camber_label_square *square) {
+    camber_label_square wider = block->square = *square;
+    const camber_box *known = &block->domain.known;
+    while (wider.level > 0) {
+        wider = (camber_label_square){wider.level - 1, wider.column / 2, wider.row / 2};
+        const camber_box box = box_of(z, &wider, 0.0), reached = box_of(z, &wider, CAMBER_LABEL_REACH_PX);
+        const bool inside = block->domain.whole || (reached.x0 >= known->x0 && reached.y0 >= known->y0 &&
+                                                    reached.x1 <= known->x1 && reached.y1 <= known->y1);
+        if (!inside || !is_settled(block, &box) || !has_room(z->desc.shelf, block, &box))
+            break;
+        block->square = wider;
+        block->box = box;
+    }
+}
 
 /* Moves the forms and lines that are used to the front of their arrays. numbers: those of forms, then of lines. */
 static void close_up(camber_label_layout *l, uint32_t *numbers) {
@@ -263,16 +327,21 @@ static camber_status keep_shown(label_block *block) {
     return status;
 }
 
-static camber_status make_block(camber_zoom_labels *z, const camber_box *box, label_block **made) {
+/* Makes the block that has the labels in a box. */
+static camber_status make_block(camber_zoom_labels *z, const camber_box *box, const camber_label_square *square,
+                                label_block **made) {
     camber_status status = CAMBER_OK;
     bool settled = false;
     label_block *block = camber_alloc_zero(z->context, 1, sizeof *block);
     if (!block)
         return CAMBER_ERROR_MEMORY;
+    block->owner = z;
     block->box = *box;
     block->layout.context = z->context;
     for (double margin = FIRST_MARGIN_PX; !settled && status == CAMBER_OK; margin *= WIDER)
         status = place_with_margin(z, block, margin, &settled);
+    if (status == CAMBER_OK && square)
+        widen_block(z, block, square);
     if (status == CAMBER_OK)
         status = keep_shown(block);
     if (status == CAMBER_OK)
@@ -284,73 +353,72 @@ static camber_status make_block(camber_zoom_labels *z, const camber_box *box, la
 
 /* ---- Finding blocks ---- */
 
-static camber_status is_divided(const camber_zoom_labels *z, const camber_label_square *square, bool *divided) {
-    size_t count = z->desc.things->count;
-    camber_status status = CAMBER_OK;
-    *divided = false;
-    if (square->level >= z->desc.finest_level || count <= z->desc.block_things)
-        return CAMBER_OK;
-    if (z->desc.block_things > 0)
-        status = camber_label_things_count(z->desc.things, square, &count);
-    *divided = count > z->desc.block_things;
-    return status;
+static bool is_divided(const camber_zoom_labels *z, const camber_label_square *square) {
+    return square->level < z->desc.finest_level && z->desc.things->count > z->desc.block_things &&
+           (z->desc.block_things == 0 || camber_label_things_count(z->desc.things, square) > z->desc.block_things);
 }
 
-static bool is_same(const camber_label_square *a, const camber_label_square *b) {
-    return a->level == b->level && a->column == b->column && a->row == b->row;
+static bool is_inside(const camber_label_square *square, const camber_label_square *outer) {
+    const int shift = square->level - outer->level;
+    return shift >= 0 && outer->column == square->column >> shift && outer->row == square->row >> shift;
 }
 
-/* Drops the least recently used blocks but the first one, until the others take little memory. */
-static void drop_old(camber_zoom_labels *z) {
-    size_t bytes = 0;
-    label_block **at = &z->blocks;
-    while (*at) {
-        bytes += (*at)->bytes;
-        if (bytes <= z->desc.kept_bytes || at == &z->blocks) {
-            at = &(*at)->next;
-            continue;
-        }
-        label_block *old = *at;
-        *at = old->next;
-        bytes -= old->bytes;
-        free_block(old);
+/* Drops the least recently used blocks but the first one, until all take little memory. */
+static void drop_old(camber_label_shelf *shelf) {
+    while (shelf->held_bytes > shelf->limit_bytes && shelf->blocks->next) {
+        label_block **last = &shelf->blocks->next;
+        while ((*last)->next)
+            last = &(*last)->next;
+        shelf->held_bytes -= (*last)->bytes;
+        free_block(*last);
+        *last = NULL;
     }
 }
 
-/* Finds the block, or places it. It is valid until the next call. */
+/* Returns the square for which labels are placed if those of a square are wanted. It is the square itself at first, so
+ * that the first picture is soon there, and a large one if labels near it were wanted before. */
+static camber_label_square grow(const camber_zoom_labels *z, const camber_label_square *square) {
+    camber_label_square wide = *square;
+    while (z->desc.block_things == 0 && wide.level > 0 && z->view.scale_px / exp2(wide.level) < GROWN_PX)
+        wide = (camber_label_square){wide.level - 1, wide.column / 2, wide.row / 2};
+    for (const label_block *block = z->desc.shelf->blocks; block; block = block->next)
+        if (block->owner == z && is_inside(&block->square, &wide))
+            return wide;
+    return *square;
+}
+
+/* Finds a block that has the labels of a square, or places it. It is valid until the next call. */
 static camber_status get_block(camber_zoom_labels *z, const camber_label_square *square, label_block **found) {
-    label_block **at = &z->blocks, *block = NULL;
-    camber_status status = CAMBER_OK;
-    while (*at && !is_same(&(*at)->square, square))
+    camber_label_shelf *shelf = z->desc.shelf;
+    label_block **at = &shelf->blocks, *block = NULL;
+    while (*at && !((*at)->owner == z && is_inside(square, &(*at)->square)))
         at = &(*at)->next;
     if (*at) {
         block = *at;
         *at = block->next;
     } else {
-        const camber_box box = box_of(z, square, 0.0);
-        status = make_block(z, &box, &block);
-        if (status == CAMBER_OK)
-            block->square = *square;
+        const camber_label_square placed = grow(z, square);
+        const camber_box box = box_of(z, &placed, 0.0);
+        const camber_status status = make_block(z, &box, &placed, &block);
+        if (status != CAMBER_OK)
+            return status;
+        shelf->held_bytes += block->bytes;
+        shelf->placed++;
     }
-    if (status != CAMBER_OK)
-        return status;
-    block->next = z->blocks;
-    z->blocks = *found = block;
-    drop_old(z);
+    block->next = shelf->blocks;
+    shelf->blocks = *found = block;
+    drop_old(shelf);
     return CAMBER_OK;
 }
 
-/* Finds the block that contains a square of the finest level. */
+/* Finds a block that contains a square of the finest level. */
 static camber_status find_block(camber_zoom_labels *z, const camber_label_square *square, label_block **found) {
     camber_label_square at = {0};
-    bool divided = true;
-    camber_status status = CAMBER_OK;
-    for (int level = 0; status == CAMBER_OK && divided; level++) {
-        const int shift = square->level - level;
+    while (is_divided(z, &at)) {
+        const int level = at.level + 1, shift = square->level - level;
         at = (camber_label_square){level, square->column >> shift, square->row >> shift};
-        status = is_divided(z, &at, &divided);
     }
-    return status == CAMBER_OK ? get_block(z, &at, found) : status;
+    return get_block(z, &at, found);
 }
 
 /* ---- Drawing ---- */
@@ -454,7 +522,7 @@ camber_status camber_zoom_labels_place_view(const camber_features *features, con
     if (status == CAMBER_OK) {
         const camber_label_window window = window_of(z, view);
         const camber_box box = picture_box(&window, view);
-        status = make_block(z, &box, &block);
+        status = make_block(z, &box, NULL, &block);
         if (status == CAMBER_OK)
             status = draw_block(block, &window, view, drawn);
     }
@@ -511,37 +579,25 @@ static camber_status list_block(const listing *of, const camber_label_square *sq
     return status;
 }
 
-/* Lists the blocks in a square. near: the count things whose labels may reach into it. */
-static camber_status list_square(const listing *of, const camber_label_square *square, const uint32_t *near,
-                                 size_t count) {
+/* Lists the blocks in a square. */
+static camber_status list_square(const listing *of, const camber_label_square *square) {
     camber_zoom_labels *z = of->labels;
     const camber_box px = box_of(z, square, 0.0), reached = box_of(z, square, CAMBER_LABEL_REACH_PX);
     const camber_box box = scale(&px, 1.0 / z->view.scale_px), wide = scale(&reached, 1.0 / z->view.scale_px);
-    bool divided;
-    size_t kept = 0;
-    if (!camber_label_find_worlds(of->area, &box))
+    camber_status status = CAMBER_OK;
+    if (!camber_label_find_worlds(of->area, &box) || !camber_label_things_touch(z->desc.things, &wide))
         return CAMBER_OK;
-    uint32_t *own = camber_alloc(z->context, count, sizeof *own);
-    if (!own)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t thing = near ? near[i] : (uint32_t)i;
-        if (camber_label_find_worlds(&wide, &z->desc.things->items[thing].box))
-            own[kept++] = thing;
-    }
-    camber_status status = kept ? is_divided(z, square, &divided) : CAMBER_OK;
-    if (status == CAMBER_OK && kept && !divided)
-        status = list_block(of, square);
-    for (uint32_t i = 0; i < 4 && status == CAMBER_OK && kept && divided; i++) {
+    if (!is_divided(z, square))
+        return list_block(of, square);
+    for (uint32_t i = 0; i < 4 && status == CAMBER_OK; i++) {
         const camber_label_square quarter = {square->level + 1, 2 * square->column + i % 2, 2 * square->row + i / 2};
-        status = list_square(of, &quarter, own, kept);
+        status = list_square(of, &quarter);
     }
-    camber_free(z->context, own);
     return status;
 }
 
 camber_status camber_zoom_labels_list(camber_zoom_labels *labels, const camber_box *area, camber_shown_label_fn *take,
                                       void *user) {
     const listing of = {labels, area, take, user};
-    return list_square(&of, &(camber_label_square){0}, NULL, labels->desc.things->count);
+    return list_square(&of, &(camber_label_square){0});
 }

@@ -3,27 +3,38 @@
  *
  * Labels are placed in blocks, squares of the map that are divided until few things are in each. A block is placed
  * together with its surroundings, as far as labels there may matter to those in the block (label_layout.h,
- * placement.c). So the result depends neither on the blocks nor on their order. Labels are placed in CSS px, so
- * pictures of any ratio have the same ones. */
+ * placement.c). So the result depends neither on the blocks nor on their order. What is settled on the way is kept: if
+ * a block needs much of its surroundings, the largest square around it that is settled takes its place. Labels are
+ * placed in CSS px, so pictures of any ratio have the same ones. */
 #ifndef CAMBER_MAP_ZOOM_LABELS_H
 #define CAMBER_MAP_ZOOM_LABELS_H
 
 #include "map/label_things.h"
 #include "map/labels.h"
 
+/* The blocks that are kept, of all zooms that use the shelf. Zeroed but for the limit it is empty; it is empty again
+ * when the labels of all zooms are destroyed. */
+typedef struct camber_label_block camber_label_block;
+typedef struct camber_label_shelf {
+    camber_label_block *blocks; /* the most recently used one first */
+    size_t held_bytes;          /* that they take */
+    size_t placed;              /* how many have been placed so far */
+    size_t limit_bytes;         /* about how much memory they may take before the least recently used one is dropped */
+} camber_label_shelf;
+
 typedef struct camber_zoom_labels_desc {
     const camber_features *features; /* with fonts */
     camber_label_things *things;
-    double zoom;             /* as in MapLibre; below 0 the style is evaluated at 0, and the world is smaller */
-    double least_importance; /* of points, world coordinates: lines of labels are simplified at least as much */
-    int finest_level;        /* the smallest blocks are 1 / 2^finest_level of the world wide */
-    size_t block_things;     /* a block with more things is divided */
-    size_t kept_bytes;       /* about how much memory blocks may take before the least recently used one is dropped */
+    camber_label_shelf *shelf; /* NULL: nothing is kept, and only camber_zoom_labels_place_view may do that */
+    double zoom;               /* as in MapLibre; below 0 the style is evaluated at 0, and the world is smaller */
+    double least_importance;   /* of points, world coordinates: lines of labels are simplified at least as much */
+    int finest_level;          /* the smallest blocks are 1 / 2^finest_level of the world wide */
+    size_t block_things;       /* a block with more things is divided */
 } camber_zoom_labels_desc;
 
 typedef struct camber_zoom_labels camber_zoom_labels;
 
-/* The features and the things must outlive the labels. Returns CAMBER_ERROR_MEMORY. */
+/* The features, the things and the shelf must outlive the labels. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_zoom_labels_create(const camber_zoom_labels_desc *desc, camber_zoom_labels **labels);
 void camber_zoom_labels_destroy(camber_zoom_labels *labels);
 

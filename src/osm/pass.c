@@ -163,7 +163,11 @@ static void show_progress(camber_osm_pass *pass, double *shown_ms) {
         return;
     *shown_ms = now;
     pthread_mutex_lock(&pass->context_lock);
-    camber_progress(desc->context, "reading", desc->from + done * (desc->to - desc->from));
+    camber_progress_tell(desc->context, &(camber_progress_info){.stage = "reading",
+                                                                .fraction = desc->from + done * (desc->to - desc->from),
+                                                                .unit = "blocks",
+                                                                .done = pass->committed,
+                                                                .total = desc->part_count});
     pthread_mutex_unlock(&pass->context_lock);
 }
 

@@ -8,6 +8,7 @@
 #include "serve/answer.h"
 
 #include "serve/gzip.h"
+#include "serve/overlay.h"
 #include "serve/page.h"
 
 #include <poll.h>
@@ -16,7 +17,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LARGEST_UNPACKED_BYTES = 64 << 20 };
+enum { LARGEST_UNPACKED_BYTES = 64 << 20, MOST_POSTS = 8 };
 
 typedef struct request {
     camber_listener *listener;
@@ -25,6 +26,10 @@ typedef struct request {
     char method[8];
     camber_route_request route;
     camber_tile_request tile_request;
+    camber_overlay *overlay; /* drawn over a picture. NULL: none */
+    char *posted;            /* posted_bytes of a body. NULL: none */
+    size_t posted_bytes;
+    bool is_post, is_crowded; /* it is counted among the server's posts; there are too many of them */
     bool begun, asked, refused;
     int status; /* the status that was sent; 0: none yet */
     size_t sent_bytes;
@@ -37,6 +42,7 @@ typedef struct reply {
     bool has_page, has_variants; /* it needs the page's headers; it may be sent compressed to other clients */
     bool is_stream;              /* it is an event stream, and body is NULL */
     char last_modified[CAMBER_DATE_SIZE];
+    char location[64]; /* where the answer is instead; "": here */
 } reply;
 
 /* ---- Sending ---- */
@@ -78,6 +84,8 @@ static void add_headers(const request *r, const reply *a, struct MHD_Response *r
         add(response, MHD_HTTP_HEADER_LAST_MODIFIED, a->last_modified);
     if (a->has_variants)
         add(response, MHD_HTTP_HEADER_VARY, MHD_HTTP_HEADER_ACCEPT_ENCODING);
+    if (a->location[0])
+        add(response, MHD_HTTP_HEADER_LOCATION, a->location);
     if (a->has_page) {
         add(response, "Content-Security-Policy", server->policy);
         add(response, "Referrer-Policy", "no-referrer");
@@ -120,6 +128,17 @@ static enum MHD_Result send_error(request *r, int status) {
     return send_answer(r, &a);
 }
 
+/* Sends a 400 whose text says what is wrong with the request. */
+static enum MHD_Result send_refusal(request *r, const char *reason) {
+    char text[512];
+    const int length = snprintf(text, sizeof text, "400 %s\n", reason);
+    reply a = {.status = 400,
+               .body = camber_body_create(text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1),
+               .media_type = "text/plain; charset=utf-8",
+               .cache_control = "no-store"};
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
 /* Sends one of two bodies. The second is compressed, and may be NULL. */
 static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bodies[2]) {
     const bool gzip = bodies[1] && camber_accepts_gzip(header_of(r, MHD_HTTP_HEADER_ACCEPT_ENCODING));
@@ -130,10 +149,11 @@ static enum MHD_Result send_variant(request *r, reply *a, camber_body *const bod
 
 /* ---- Tiles ---- */
 
-/* Returns the current content, and holds only the bodies that it returns. */
-static camber_content_view look(camber_server *server, bool dark, camber_body *bodies[2]) {
+/* Returns the current content of the requested map, and holds only the bodies that it returns. */
+static camber_content_view look(camber_server *server, const camber_route_request *route, camber_body *bodies[2]) {
+    const bool dark = route->dark;
     pthread_mutex_lock(&server->mutex);
-    const camber_content_view view = server->view;
+    const camber_content_view view = server->maps[route->map].view;
     for (int i = 0; bodies && i < 2; i++)
         bodies[i] = view.tilejson[dark][i] ? camber_body_hold(view.tilejson[dark][i]) : NULL;
     pthread_mutex_unlock(&server->mutex);
@@ -156,13 +176,14 @@ static bool find_stored(camber_server *server, const camber_route_request *route
     const camber_tiles_place place = {route->zoom, route->column, route->row};
     const uint8_t *bytes = NULL;
     size_t size_bytes = 0;
+    camber_served_map *map = server->maps + route->map;
     if ((*body = camber_tile_cache_get(server->cache, key)) != NULL)
         return true;
-    pthread_mutex_lock(&server->reader_mutex);
-    const uint64_t generation = camber_tile_cache_get_generation(server->cache);
-    const camber_status status = camber_tiles_reader_read(server->reader, &place, &bytes, &size_bytes);
+    pthread_mutex_lock(&map->reader_mutex);
+    const uint64_t generation = camber_tile_cache_get_generation(server->cache, route->map);
+    const camber_status status = camber_tiles_reader_read(map->reader, &place, &bytes, &size_bytes);
     *body = status == CAMBER_OK && size_bytes ? camber_body_create(bytes, size_bytes) : NULL;
-    pthread_mutex_unlock(&server->reader_mutex);
+    pthread_mutex_unlock(&map->reader_mutex);
     if (*body)
         camber_tile_cache_put(server->cache, key, *body, generation);
     return status == CAMBER_OK && (*body || size_bytes == 0);
@@ -204,7 +225,7 @@ static enum MHD_Result answer_stored(request *r, const camber_content_view *view
 
 /* Answers with the tileset of a folder of mesh tiles. Its files are identified by numbers only. */
 static enum MHD_Result answer_tileset(request *r) {
-    const camber_content_view view = look(r->listener->server, false, NULL);
+    const camber_content_view view = look(r->listener->server, &r->route, NULL);
     const bool is_root = r->route.route == CAMBER_ROUTE_TILESET;
     char name[64] = "tileset.json";
     if (!view.ready)
@@ -245,9 +266,80 @@ static enum MHD_Result request_tile(request *r) {
     return MHD_YES;
 }
 
+/* ---- Overlays of pictures ---- */
+
+/* The parameters of a query, as libmicrohttpd decodes them. */
+typedef struct query {
+    camber_overlay_param *params;
+    size_t count, capacity;
+    bool is_broken; /* a parameter contains a zero byte, or there is no memory */
+} query;
+
+static enum MHD_Result add_param(void *user, enum MHD_ValueKind kind, const char *name, size_t name_size,
+                                 const char *value, size_t value_size) {
+    query *q = user;
+    (void)kind;
+    const char *text = value ? value : "";
+    if (q->count == q->capacity) {
+        const size_t capacity = q->capacity ? 2 * q->capacity : 16;
+        camber_overlay_param *params = realloc(q->params, capacity * sizeof *params);
+        if (!params) {
+            q->is_broken = true;
+            return MHD_NO;
+        }
+        q->params = params;
+        q->capacity = capacity;
+    }
+    q->is_broken = q->is_broken || strlen(name) != name_size || (value && strlen(value) != value_size);
+    q->params[q->count++] = (camber_overlay_param){name, text};
+    return MHD_YES;
+}
+
+/* Makes what the request draws over its picture, and finds the picture's view. Returns 200 or an error's status. */
+static int take_overlay(request *r, char reason[CAMBER_OVERLAY_REASON_SIZE]) {
+    const camber_server_desc *server = &r->listener->server->desc;
+    query q = {0};
+    int status = 400;
+    (void)MHD_get_connection_values_n(r->connection, MHD_GET_ARGUMENT_KIND, add_param, &q);
+    const camber_overlay_desc desc = {.params = q.params,
+                                      .param_count = q.count,
+                                      .body = r->posted,
+                                      .body_size = r->posted_bytes,
+                                      .fonts = server->fonts,
+                                      .font_count = server->font_count};
+    if (r->is_crowded)
+        status = 503;
+    else if (q.is_broken)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the query has a zero byte");
+    else if (r->posted_bytes > CAMBER_OVERLAY_MOST_BODY_BYTES)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the body has more than %d bytes", CAMBER_OVERLAY_MOST_BODY_BYTES);
+    else if (strcmp(r->method, "POST") == 0 && !r->posted)
+        snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "POST needs a body with GeoJSON");
+    else
+        status = camber_overlay_create(&desc, &r->route, &r->overlay, reason);
+    free(q.params);
+    r->route.overlay = r->overlay;
+    return status;
+}
+
+/* Keeps a part of the body of a request, up to one byte more than it may have. GeoJSON takes many times its size until
+ * it is drawn, so few requests may have a body at once. */
+static void take_body(request *r, const char *bytes, size_t size) {
+    const size_t most = CAMBER_OVERLAY_MOST_BODY_BYTES + 1;
+    if (!r->is_post) {
+        r->is_post = true;
+        r->is_crowded = atomic_fetch_add(&r->listener->server->posts, 1) >= MOST_POSTS;
+    }
+    if (r->is_crowded || (!r->posted && !(r->posted = malloc(most))))
+        return;
+    const size_t taken = size < most - r->posted_bytes ? size : most - r->posted_bytes;
+    memcpy(r->posted + r->posted_bytes, bytes, taken);
+    r->posted_bytes += taken;
+}
+
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
-    const camber_content_view view = look(server, r->route.dark, NULL);
+    const camber_content_view view = look(server, &r->route, NULL);
     const bool is_tile = r->route.route == CAMBER_ROUTE_TILE;
     if (r->asked && !r->refused && r->tile_request.result == CAMBER_TILE_REQUEST_DONE)
         return send_tile(r, &view, r->tile_request.body);
@@ -260,6 +352,10 @@ static enum MHD_Result answer_drawn(request *r) {
     if (r->route.type > CAMBER_ROUTE_WEBP || (r->route.dark && !view.has_dark) ||
         (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
         return send_error(r, 404);
+    char reason[CAMBER_OVERLAY_REASON_SIZE] = "";
+    const int status = is_tile ? 200 : take_overlay(r, reason);
+    if (status != 200)
+        return status == 400 ? send_refusal(r, reason) : send_error(r, status);
     camber_body *body = is_tile ? camber_tile_cache_get(server->cache, camber_draw_queue_key(&r->route)) : NULL;
     return body ? send_tile(r, &view, body) : request_tile(r);
 }
@@ -280,8 +376,9 @@ static enum MHD_Result answer_page(request *r) {
 
 static enum MHD_Result answer_tilejson(request *r) {
     camber_body *bodies[2];
-    const camber_content_view view = look(r->listener->server, r->route.dark, bodies);
+    const camber_content_view view = look(r->listener->server, &r->route, bodies);
     reply a = {.status = 200, .media_type = "application/json", .cache_control = "no-cache"};
+    memcpy(a.last_modified, view.last_modified, sizeof a.last_modified);
     const enum MHD_Result result = !view.ready  ? send_error(r, 503)
                                    : !bodies[0] ? send_error(r, 404)
                                                 : send_variant(r, &a, bodies);
@@ -298,10 +395,20 @@ static enum MHD_Result send_text(request *r, const char *text, size_t size_bytes
     return a.body ? send_answer(r, &a) : MHD_NO;
 }
 
+/* Whether a map has been read, or all of them. */
+static bool is_ready(camber_server *server, uint32_t map) {
+    bool ready = true;
+    pthread_mutex_lock(&server->mutex);
+    for (uint32_t i = 0; i < server->desc.map_count; i++)
+        ready = ready && (server->maps[i].view.ready || (map != CAMBER_ROUTE_NO_MAP && map != i));
+    pthread_mutex_unlock(&server->mutex);
+    return ready;
+}
+
 static enum MHD_Result answer_health(request *r) {
     static const char fine[] = "ok\n";
     camber_server *server = r->listener->server;
-    return look(server, false, NULL).ready && !server->stopping
+    return is_ready(server, r->route.map) && !server->stopping
                ? send_text(r, fine, sizeof fine - 1, "text/plain; charset=utf-8")
                : send_error(r, 503);
 }
@@ -309,7 +416,7 @@ static enum MHD_Result answer_health(request *r) {
 static enum MHD_Result answer_metrics(request *r) {
     camber_server *server = r->listener->server;
     const camber_metrics_now now = {.cache = camber_tile_cache_get_stats(server->cache),
-                                    .ready = look(server, false, NULL).ready,
+                                    .ready = is_ready(server, CAMBER_ROUTE_NO_MAP),
                                     .in_flight = server->in_flight,
                                     .uptime_s = 1e-3 * (camber_now_ms() - server->start_ms)};
     char *text = NULL;
@@ -347,6 +454,61 @@ static enum MHD_Result answer_events(request *r) {
     return queued;
 }
 
+static void write_escaped(FILE *file, const char *text) {
+    for (; *text; text++)
+        if (strchr("<>&\"'", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+}
+
+static void write_entry(FILE *file, const camber_served_map *map) {
+    fprintf(file, "<li><a href=\"%s/\">", map->name);
+    write_escaped(file, *map->title ? map->title : map->name);
+    fputs("</a>", file);
+    if (*map->title && strcmp(map->title, map->name) != 0)
+        fprintf(file, " <code>%s</code>", map->name);
+    fputs(map->view.ready ? "</li>\n" : " is being read</li>\n", file);
+}
+
+/* The list of the maps. It repeats only names and titles, not the request. */
+static enum MHD_Result answer_index(request *r) {
+    camber_server *server = r->listener->server;
+    char *text = NULL;
+    size_t size_bytes = 0;
+    FILE *file = open_memstream(&text, &size_bytes);
+    if (!file)
+        return MHD_NO;
+    fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Maps</title>\n"
+          "<link rel=\"icon\" href=\"page/icon.svg\" type=\"image/svg+xml\">\n"
+          "<link rel=\"stylesheet\" href=\"page/page.css\">\n"
+          "</head>\n<body class=\"index\">\n<main>\n<h1>Maps</h1>\n<ul>\n",
+          file);
+    pthread_mutex_lock(&server->mutex);
+    for (uint32_t i = 0; i < server->desc.map_count; i++)
+        if (!server->maps[i].is_dark)
+            write_entry(file, server->maps + i);
+    pthread_mutex_unlock(&server->mutex);
+    fputs("</ul>\n</main>\n</body>\n</html>\n", file);
+    reply a = {.status = 200, .media_type = "text/html; charset=utf-8", .cache_control = "no-cache", .has_page = true};
+    a.body = fclose(file) == 0 ? camber_body_create(text, size_bytes) : NULL;
+    free(text);
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
+/* The page's paths are relative, so that the folder's name must end with a slash. */
+static enum MHD_Result answer_folder(request *r) {
+    static const char moved[] = "308 the map's page is below this path, with a slash after it\n";
+    reply a = {.status = 308,
+               .body = camber_body_create(moved, sizeof moved - 1),
+               .media_type = "text/plain; charset=utf-8",
+               .cache_control = "no-cache"};
+    snprintf(a.location, sizeof a.location, "%.*s/", (int)r->route.name_length, r->route.name);
+    return a.body ? send_answer(r, &a) : MHD_NO;
+}
+
 static enum MHD_Result answer(request *r) {
     if (r->listener->is_for_metrics != (r->route.route == CAMBER_ROUTE_METRICS))
         return send_error(r, 404);
@@ -360,6 +522,8 @@ static enum MHD_Result answer(request *r) {
     case CAMBER_ROUTE_HEALTH: return answer_health(r);
     case CAMBER_ROUTE_METRICS: return answer_metrics(r);
     case CAMBER_ROUTE_EVENTS: return answer_events(r);
+    case CAMBER_ROUTE_INDEX: return answer_index(r);
+    case CAMBER_ROUTE_FOLDER: return answer_folder(r);
     case CAMBER_ROUTE_NONE:
     case CAMBER_ROUTES: break;
     }
@@ -428,13 +592,25 @@ static bool has_body(const request *r) {
     return (length && strcmp(length, "0") != 0) || header_of(r, MHD_HTTP_HEADER_TRANSFER_ENCODING);
 }
 
+static int parse_route(const request *r, const char *method, camber_route_request *route) {
+    const camber_server_desc *desc = &r->listener->server->desc;
+    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
+    return camber_route_parse(&limits, method, r->client->path, route);
+}
+
+/* Whether the request's body is read: that of a picture's GeoJSON. */
+static bool takes_body(const request *r, const char *method) {
+    camber_route_request route;
+    return strcmp(method, "POST") == 0 && !r->listener->is_for_metrics && parse_route(r, method, &route) == 200;
+}
+
 enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connection, const char *url,
                                       const char *method, const char *version, const char *upload, size_t *upload_size,
                                       void **state) {
     camber_listener *listener = user;
     request *r = *state ? *state : take_request(listener, connection);
+    const size_t sent_bytes = *upload_size;
     (void)url;
-    (void)upload;
     *upload_size = 0;
     if (!r)
         return MHD_NO;
@@ -443,19 +619,24 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
         return MHD_YES;
     if (r->asked)
         return answer_drawn(r);
-    /* An answer at the first call closes the connection. That is right if the request has a body, which nobody
-     * reads. */
-    if (!r->begun && !has_body(r)) {
+    /* An answer at the first call closes the connection. That is right if the request has a body that nobody reads. */
+    const bool takes = has_body(r) && takes_body(r, method);
+    if (!r->begun && (takes || !has_body(r))) {
         r->begun = true;
+        return MHD_YES;
+    }
+    if (takes && sent_bytes) {
+        take_body(r, upload, sent_bytes);
         return MHD_YES;
     }
     camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
-    const camber_route_limits limits = {listener->server->desc.most_ratio, listener->server->desc.most_px};
-    int status = is_whole(r, version) ? camber_route_parse(&limits, method, r->client->path, &r->route) : 404;
+    int status = is_whole(r, version) ? parse_route(r, method, &r->route) : 404;
     /* An archive and the metrics have no pictures, so a path of a picture gets a 404 instead of a 400. */
-    if (status == 400 && (listener->is_for_metrics || look(listener->server, false, NULL).is_archive))
+    if (status == 400 && (listener->is_for_metrics || look(listener->server, &r->route, NULL).is_archive))
         status = 404;
+    if (status == 400 && r->route.reason)
+        return send_refusal(r, r->route.reason);
     return status == 200 ? answer(r) : send_error(r, status);
 }
 
@@ -505,6 +686,10 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     if (server->desc.log_request && server->desc.logs_requests)
         log_request(r);
     camber_client_enter(r->client, CAMBER_CLIENT_SENDS);
+    camber_overlay_destroy(r->overlay);
+    free(r->posted);
+    if (r->is_post)
+        server->posts--;
     if (r->asked && !r->refused && r->status == 0) /* the tile arrived, but is not sent */
         camber_body_release(r->tile_request.body);
     r->client->request = NULL;

@@ -26,6 +26,20 @@ typedef struct camber_content_view {
     char last_modified[CAMBER_DATE_SIZE]; /* "": unknown */
 } camber_content_view;
 
+/* A map that is served, or an archive. */
+typedef struct camber_served_map {
+    const char *name; /* "": it has no name */
+    bool is_dark;     /* it is the dark theme of another map */
+    bool has_dark;    /* another map is its dark theme */
+    camber_painter *painter;
+    camber_content_view view; /* guarded by the server's mutex */
+    pthread_mutex_t reader_mutex;
+    camber_tiles_reader *reader; /* of an archive; NULL: none */
+    void (*close_reader)(void *owner);
+    void *reader_owner;
+    char title[256]; /* guarded by the server's mutex */
+} camber_served_map;
+
 /* A socket that listens, and which requests it serves. */
 typedef struct camber_listener {
     camber_server *server;
@@ -43,7 +57,7 @@ struct camber_server {
     camber_listener page, metrics_page;
     camber_tile_cache *cache;
     camber_tile_folder folder; /* the cache's folder, if it has one */
-    camber_painter *painter;
+    camber_served_map *maps;   /* desc.map_count of them */
     camber_draw_queue *queue;
     camber_clients *clients;
     camber_renderd *renderd; /* NULL: disabled */
@@ -51,15 +65,11 @@ struct camber_server {
     camber_metrics metrics;
     double start_ms;
     atomic_bool stopping;
+    atomic_int posts;          /* requests that have a body */
     _Atomic int64_t in_flight; /* requests that have been received and not yet answered */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
     camber_body **page_bodies; /* two per file: plain, then compressed or NULL */
-    pthread_mutex_t mutex;     /* guards view */
-    camber_content_view view;
-    pthread_mutex_t reader_mutex;
-    camber_tiles_reader *reader; /* of an archive; NULL: none */
-    void (*close_reader)(void *owner);
-    void *reader_owner;
+    pthread_mutex_t mutex;     /* guards the maps' views */
 };
 
 /* Callbacks of a daemon; user is its listener. */

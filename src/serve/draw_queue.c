@@ -17,6 +17,8 @@
 #include <string.h>
 
 enum { LARGEST_PICTURE_PX = 2048, TILE_PX = 256 };
+/* Whoever starts a server mostly asks for a picture at once, which must not wait for preparations. */
+enum { FIRST_PREPARED_MS = 200 };
 
 typedef enum unit_state {
     UNIT_FREE = 0,
@@ -77,7 +79,7 @@ uint32_t camber_draw_queue_side(uint32_t most, int zoom, uint32_t ratio) {
 
 camber_tile_key camber_draw_queue_key(const camber_route_request *r) {
     return (camber_tile_key){(uint64_t)r->zoom << 56 | (uint64_t)r->column << 28 | r->row,
-                             (uint64_t)r->ratio << 8 | (uint64_t)r->type << 1 | r->dark};
+                             (uint64_t)r->ratio << 8 | (uint64_t)r->type << 1 | r->dark, r->map};
 }
 
 /* Returns the key of a metatile, which is the key of its first tile as PNG, whatever type is requested. */
@@ -104,11 +106,11 @@ static void free_unit(unit *u) {
 /* Finds a unit whose picture contains, or will contain, the tile. Returns NULL if there is none. */
 static unit *find_unit(camber_draw_queue *queue, const camber_route_request *request) {
     const camber_tile_key key = key_of_picture(queue, request);
-    const uint64_t generation = camber_tile_cache_get_generation(queue->desc.cache);
+    const uint64_t generation = camber_tile_cache_get_generation(queue->desc.cache, request->map);
     for (size_t i = 0; i < queue->unit_count && request->route == CAMBER_ROUTE_TILE; i++) {
         unit *u = queue->units + i;
         if (u->state != UNIT_FREE && !is_static(u) && u->key.place == key.place && u->key.look == key.look &&
-            (u->state == UNIT_QUEUED || u->generation == generation))
+            u->key.map == key.map && (u->state == UNIT_QUEUED || u->generation == generation))
             return u;
     }
     return NULL;
@@ -242,7 +244,7 @@ static bool find_room(camber_draw_queue *queue, unit *u) {
 /* The mutex is held at the start and at the end, and released while the unit is drawn. */
 static void draw_unit(camber_draw_queue *queue, unit *u) {
     u->state = UNIT_DRAWING;
-    u->generation = camber_tile_cache_get_generation(queue->desc.cache);
+    u->generation = camber_tile_cache_get_generation(queue->desc.cache, u->request.map);
     queue->desc.metrics->queued = (int64_t)--queue->queued;
     pthread_mutex_unlock(&queue->mutex);
     const double start_ms = camber_now_ms();
@@ -286,7 +288,11 @@ static void serve_unit(camber_draw_queue *queue, unit *u) {
 
 static void run_drawing(camber_draw_queue *queue) {
     bool prepares = true;
+    const struct timespec first = camber_time_in(FIRST_PREPARED_MS);
     pthread_mutex_lock(&queue->mutex);
+    while (!queue->stops && !queue->woken && !find_oldest(queue, is_queued) &&
+           pthread_cond_timedwait(&queue->work, &queue->mutex, &first) == 0)
+        ;
     while (!queue->stops) {
         unit *u = find_oldest(queue, is_queued);
         if (u) {

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 /* Statuses that the server sends. The last kind counts all others. */
-static const int statuses[CAMBER_STATUS_KINDS - 1] = {200, 204, 304, 400, 404, 405, 408, 410, 413, 431, 500, 503};
+static const int statuses[CAMBER_STATUS_KINDS - 1] = {200, 204, 304, 308, 400, 404, 405, 408, 410, 413, 431, 500, 503};
 static const double ends_s[CAMBER_HISTOGRAM_BUCKETS] = {0.0005, 0.001, 0.0025, 0.005, 0.01,
                                                         0.025,  0.05,  0.1,    0.25,  1.0};
 

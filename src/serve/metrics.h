@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-enum { CAMBER_HISTOGRAM_BUCKETS = 10, CAMBER_STATUS_KINDS = 13 };
+enum { CAMBER_HISTOGRAM_BUCKETS = 10, CAMBER_STATUS_KINDS = 14 };
 
 /* A histogram of durations, in seconds. */
 typedef struct camber_histogram {

@@ -4,6 +4,8 @@
  * prepared, so that the first tile of a zoom need not wait for its census. */
 #include "serve/painter.h"
 
+#include "serve/overlay.h"
+
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,14 +14,14 @@ enum { FIRST_PREPARED_ZOOM = 10, LAST_PREPARED_ZOOM = 17 };
 
 struct camber_painter {
     camber_tile_cache *cache;
-    uint32_t side;
+    uint32_t map, side;
     pthread_mutex_t mutex; /* guards next and has_next */
     camber_map_source next;
     bool has_next;
     /* Only used by the painter's thread: */
     camber_map_source source;
     bool has_source;
-    const camber_style *style; /* that the source's features have now. NULL: not known */
+    const camber_style *style; /* that the source's features have now */
     camber_tiles_engine *engines[CAMBER_MAP_SOURCE_THEMES][CAMBER_MAP_SOURCE_MOST_RATIO];
     camber_scene *scenes[CAMBER_MAP_SOURCE_THEMES];
     camber_mesh *mesh; /* for scenes */
@@ -55,15 +57,16 @@ static void take_next(camber_painter *painter) {
     close_source(painter);
     painter->source = next;
     painter->has_source = true;
-    painter->style = NULL;
+    painter->style = next.styles[0];
     painter->prepared_zoom = FIRST_PREPARED_ZOOM;
 }
 
-camber_painter *camber_painter_create(camber_tile_cache *cache, uint32_t side) {
+camber_painter *camber_painter_create(camber_tile_cache *cache, uint32_t map, uint32_t side) {
     camber_painter *made = calloc(1, sizeof *made);
     if (!made)
         return NULL;
     made->cache = cache;
+    made->map = map;
     made->side = side;
     pthread_mutex_init(&made->mutex, NULL);
     return made;
@@ -87,7 +90,7 @@ void camber_painter_put(camber_painter *painter, const camber_map_source *source
     pthread_mutex_unlock(&painter->mutex);
     /* Pictures that begin from now on belong to the new map. A picture that has already begun belongs to the previous
      * generation, and is not cached. */
-    camber_tile_cache_clear(painter->cache, source->input);
+    camber_tile_cache_clear(painter->cache, painter->map, source->input);
     if (unseen && before.close)
         before.close(before.owner);
 }
@@ -155,26 +158,68 @@ static camber_status draw_tiles(camber_painter *painter, const camber_route_requ
 
 /* ---- Pictures of a view ---- */
 
+static camber_scene_desc describe_scene(const camber_painter *painter, const camber_route_request *request) {
+    return (camber_scene_desc){.view = {.kind = CAMBER_VIEW_CENTER,
+                                        .longitude = request->longitude,
+                                        .latitude = request->latitude,
+                                        .zoom = request->map_zoom,
+                                        .bearing_deg = request->bearing_deg,
+                                        .pitch_deg = request->pitch_deg,
+                                        .width = request->width,
+                                        .height = request->height,
+                                        .ratio = request->ratio},
+                               .simplify_px = painter->source.simplify_px};
+}
+
 /* A scene is created once per theme, and then moved. If moving fails, it is created again. */
 static camber_status move_scene(camber_painter *painter, const camber_route_request *request, camber_scene **scene) {
     const camber_map_source *source = &painter->source;
     camber_scene **slot = &painter->scenes[request->dark];
-    const camber_scene_desc desc = {.view = {.kind = CAMBER_VIEW_CENTER,
-                                             .longitude = request->longitude,
-                                             .latitude = request->latitude,
-                                             .zoom = request->map_zoom,
-                                             .bearing_deg = request->bearing_deg,
-                                             .pitch_deg = request->pitch_deg,
-                                             .width = request->width,
-                                             .height = request->height,
-                                             .ratio = request->ratio},
-                                    .simplify_px = source->simplify_px};
+    const camber_scene_desc desc = describe_scene(painter, request);
     camber_status status = take_theme(painter, request->dark);
     if (status == CAMBER_OK && !painter->mesh)
         status = camber_mesh_create(source->device, source->renderer, &painter->mesh);
     if (status == CAMBER_OK)
         status = *slot ? camber_scene_move(*slot, &desc.view) : camber_scene_create(source->features, &desc, slot);
     *scene = *slot;
+    return status;
+}
+
+/* Draws a frame, and the overlay's passes after its own. */
+static camber_status draw_over(camber_painter *painter, const camber_frame *frame, const camber_frame *over,
+                               camber_rendered_picture *rendered) {
+    camber_frame both = *frame;
+    camber_pass *passes = calloc(frame->pass_count + over->pass_count + 1, sizeof *passes);
+    if (!passes)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < frame->pass_count + over->pass_count; i++)
+        passes[i] = i < frame->pass_count ? frame->passes[i] : over->passes[i - frame->pass_count];
+    both.passes = passes;
+    both.pass_count = frame->pass_count + over->pass_count;
+    const camber_status status = camber_renderer_render_into(painter->source.renderer, &both, rendered->rgba, 0, NULL);
+    free(passes);
+    return status;
+}
+
+/* Draws a frame with what its request draws over it. */
+static camber_status draw_overlay(camber_painter *painter, const camber_route_request *request,
+                                  const camber_frame *frame, camber_rendered_picture *rendered) {
+    const camber_map_source *source = &painter->source;
+    camber_scene_desc desc = describe_scene(painter, request);
+    desc.use = CAMBER_SCENE_ONE_VIEW;
+    camber_scene *scene = NULL;
+    camber_mesh *mesh = NULL; /* it keeps parts of the scene's network, and ends with it */
+    camber_status status = camber_scene_create(camber_overlay_get_features(request->overlay), &desc, &scene);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(source->device, source->renderer, &mesh);
+    if (status == CAMBER_OK)
+        status = camber_scene_tessellate(scene, mesh, CAMBER_METHOD_STRIP);
+    if (status == CAMBER_OK) {
+        const camber_frame over = camber_scene_get_frame(scene, mesh);
+        status = draw_over(painter, frame, &over, rendered);
+    }
+    camber_mesh_destroy(mesh);
+    camber_scene_destroy(scene);
     return status;
 }
 
@@ -193,13 +238,14 @@ static camber_status draw_view(camber_painter *painter, const camber_route_reque
     rendered->opaque = camber_scene_get_info(scene).opaque;
     if (!camber_rendered_picture_resize(rendered))
         return CAMBER_ERROR_MEMORY;
-    return camber_renderer_render_into(painter->source.renderer, &frame, rendered->rgba, 0, NULL);
+    return request->overlay ? draw_overlay(painter, request, &frame, rendered)
+                            : camber_renderer_render_into(painter->source.renderer, &frame, rendered->rgba, 0, NULL);
 }
 
-/* ---- Callbacks of the queue ---- */
+/* ---- Functions for the queue ---- */
 
-camber_status camber_painter_draw(void *user, const camber_route_request *request, camber_rendered_picture *rendered) {
-    camber_painter *painter = user;
+camber_status camber_painter_draw(camber_painter *painter, const camber_route_request *request,
+                                  camber_rendered_picture *rendered) {
     take_next(painter);
     if (!painter->has_source)
         return CAMBER_ERROR_NOT_FOUND;
@@ -210,8 +256,7 @@ camber_status camber_painter_draw(void *user, const camber_route_request *reques
     return status;
 }
 
-bool camber_painter_prepare(void *user) {
-    camber_painter *painter = user;
+bool camber_painter_prepare(camber_painter *painter) {
     camber_tiles_engine *engine = NULL;
     camber_tiles_picture picture;
     take_next(painter);

@@ -23,8 +23,8 @@ static const struct {
 };
 
 const char *camber_route_get_name(camber_route route) {
-    static const char *const names[CAMBER_ROUTES] = {"none",    "page",   "tilejson", "tile",   "tileset",
-                                                     "subtree", "static", "health",   "events", "metrics"};
+    static const char *const names[CAMBER_ROUTES] = {"none",   "page",   "tilejson", "tile",    "tileset", "subtree",
+                                                     "static", "health", "events",   "metrics", "index",   "folder"};
     return names[route];
 }
 
@@ -145,18 +145,61 @@ static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber
     return take(c, SUBTREES) ? take_subtree(c, r) : take_tile(c, limits, r) && r->type == CAMBER_ROUTE_GLB;
 }
 
-static bool take_static(cursor *c, camber_route_request *r) {
+static bool take_bounds(cursor *c, double bounds[4]) {
+    for (int i = 0; i < 4; i++) {
+        const double most = i % 2 ? MOST_LATITUDE : 180;
+        if ((i && !take(c, ",")) || !take_number(c, -most, most, bounds + i))
+            return false;
+    }
+    return bounds[1] <= bounds[3];
+}
+
+static bool take_center(cursor *c, camber_route_request *r) {
     if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") ||
         !take_number(c, -MOST_LATITUDE, MOST_LATITUDE, &r->latitude) || !take(c, ",") ||
         !take_number(c, 0, CAMBER_ROUTE_MOST_ZOOM, &r->map_zoom))
         return false;
-    if (take(c, "@") && (!take_number(c, -360, 360, &r->bearing_deg) ||
-                         (take(c, ",") && !take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg))))
-        return false;
-    if (!take(c, "/") || !take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) || !take_ending(c, r))
-        return false;
+    return !take(c, "@") || (take_number(c, -360, 360, &r->bearing_deg) &&
+                             (!take(c, ",") || take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg)));
+}
+
+/* Whether the view has the four numbers of bounds. */
+static bool has_bounds(const cursor *c) {
+    int commas = 0;
+    for (const char *at = c->at; at < c->end && *at != '/' && *at != '@'; at++)
+        commas += *at == ',';
+    return commas == 3;
+}
+
+static bool take_view(cursor *c, camber_route_request *r) {
+    if (take(c, "auto")) {
+        r->view = CAMBER_ROUTE_AUTO;
+        return true;
+    }
+    r->view = has_bounds(c) ? CAMBER_ROUTE_BOUNDS : CAMBER_ROUTE_CENTER;
+    return r->view == CAMBER_ROUTE_BOUNDS ? take_bounds(c, r->bounds) : take_center(c, r);
+}
+
+/* Returns NULL, or why the path is not a picture's. */
+static const char *take_picture(cursor *c, camber_route_request *r) {
+    if (!take_view(c, r) || !take(c, "/"))
+        return r->view == CAMBER_ROUTE_BOUNDS
+                   ? "the bounds are WEST,SOUTH,EAST,NORTH in degrees, south first, within 180 and 85.051129"
+                   : "the view is LON,LAT,ZOOM[@BEARING[,PITCH]], WEST,SOUTH,EAST,NORTH or auto; longitudes are within "
+                     "180, latitudes within 85.051129, zooms 0 to 24, bearings within 360 and pitches 0 to 85";
+    if (!take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) || r->width < 1 || r->height < 1)
+        return "the size after the view is WIDTHxHEIGHT, in whole px from 1 to 99999999";
+    if (!take_ending(c, r) || r->type > CAMBER_ROUTE_WEBP)
+        return "the path ends in [@Rx].png or [@Rx].webp, with R a whole number";
+    return NULL;
+}
+
+/* Any path that begins with /static/ is a picture, or an error that says what is wrong with it. */
+static bool take_static(cursor *c, camber_route_request *r) {
+    const char *reason = take_picture(c, r);
     r->route = CAMBER_ROUTE_STATIC;
-    return r->width >= 1 && r->height >= 1 && r->type <= CAMBER_ROUTE_WEBP;
+    r->reason = reason;
+    return true;
 }
 
 static bool is_too_large(const camber_route_request *r, const camber_route_limits *limits) {
@@ -187,9 +230,33 @@ static bool take_word(cursor *c, const char *word, camber_route route, camber_ro
     return true;
 }
 
-static bool take_path(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
-    if (!take(c, "/"))
-        return false;
+/* The length of a map's name if the path begins with it and a slash, or ends after it; else 0. */
+static size_t match_name(const cursor *c, const char *name) {
+    cursor rest = *c;
+    return take(&rest, name) && (rest.at == rest.end || *rest.at == '/') ? strlen(name) : 0;
+}
+
+/* Finds the map whose name the path begins with: the longest one. Returns the length of its name. */
+static size_t find_map(const cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    size_t longest = 0;
+    r->map = limits->map_count ? CAMBER_ROUTE_NO_MAP : 0;
+    for (uint32_t i = 0; i < limits->map_count; i++) {
+        const size_t length = match_name(c, limits->maps[i]);
+        if (length > longest || (!*limits->maps[i] && !longest)) {
+            longest = length;
+            r->map = i;
+        }
+    }
+    return longest;
+}
+
+/* Paths that concern all maps. */
+static bool take_common(cursor *c, camber_route_request *r) {
+    return take_word(c, "", CAMBER_ROUTE_INDEX, r) || take_word(c, "health", CAMBER_ROUTE_HEALTH, r) ||
+           take_word(c, "metrics", CAMBER_ROUTE_METRICS, r) || (take(c, "page/") && take_name(c, r));
+}
+
+static bool take_of_map(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
     if (c->at == c->end) {
         r->route = CAMBER_ROUTE_PAGE;
         r->name = c->at;
@@ -212,14 +279,36 @@ static bool take_path(cursor *c, const camber_route_limits *limits, camber_route
              take_word(c, "events", CAMBER_ROUTE_EVENTS, r) || take_word(c, "metrics", CAMBER_ROUTE_METRICS, r)));
 }
 
+static bool take_path(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    if (!take(c, "/"))
+        return false;
+    const size_t length = find_map(c, limits, r);
+    c->at += length;
+    if (length && c->at == c->end) {
+        r->route = CAMBER_ROUTE_FOLDER;
+        for (r->name = c->at; r->name[-1] != '/'; r->name--)
+            ;
+        r->name_length = (size_t)(c->at - r->name);
+        return true;
+    }
+    c->at += length ? 1 : 0;
+    return r->map == CAMBER_ROUTE_NO_MAP ? take_common(c, r) : take_of_map(c, limits, r);
+}
+
 int camber_route_parse(const camber_route_limits *limits, const char *method, const char *path,
                        camber_route_request *request) {
     cursor c = {path, path + strcspn(path, "?")};
+    const bool posts = strcmp(method, "POST") == 0;
     *request = (camber_route_request){.name = ""};
-    if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
+    if (!posts && strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
         return 405;
-    if (take_path(&c, limits, request))
-        return is_too_large(request, limits) ? 400 : 200;
+    const bool known = take_path(&c, limits, request);
+    if (posts && !(known && request->route == CAMBER_ROUTE_STATIC)) {
+        *request = (camber_route_request){.name = ""};
+        return 405;
+    }
+    if (known)
+        return request->reason || is_too_large(request, limits) ? 400 : 200;
     *request = (camber_route_request){.name = ""};
     return 404;
 }

@@ -196,6 +196,8 @@ static bool make_page(camber_server *server) {
     return true;
 }
 
+static const char *const NO_NAMES[] = {""};
+
 static camber_server_desc fill_in(const camber_server_desc *desc) {
     camber_server_desc made = *desc;
     made.listen = desc->listen ? desc->listen : "127.0.0.1:8080";
@@ -203,16 +205,56 @@ static camber_server_desc fill_in(const camber_server_desc *desc) {
     made.cache_bytes = desc->cache_bytes ? desc->cache_bytes : DEFAULT_CACHE_BYTES;
     made.most_px = desc->most_px ? desc->most_px : DEFAULT_PX;
     made.most_ratio = desc->most_ratio ? desc->most_ratio : DEFAULT_RATIO;
+    made.maps = desc->map_count ? desc->maps : NO_NAMES;
+    made.map_count = desc->map_count ? desc->map_count : 1;
     made.side = desc->side ? desc->side : desc->renderd ? RENDERD_SIDE : DEFAULT_SIDE;
     made.threads = (uint32_t)camber_threads_count(desc->threads);
     return made;
+}
+
+/* Whether a map is the dark theme of another. */
+static bool is_dark_of(const char *dark, const char *light) {
+    const size_t length = strlen(light);
+    return strncmp(dark, light, length) == 0 && strcmp(dark + length, length ? "/dark" : "dark") == 0;
+}
+
+static bool make_maps(camber_server *server) {
+    const uint32_t count = server->desc.map_count;
+    if (!(server->maps = calloc(count, sizeof *server->maps)))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        camber_served_map *map = server->maps + i;
+        map->name = server->desc.maps[i];
+        pthread_mutex_init(&map->reader_mutex, NULL);
+        for (uint32_t k = 0; k < count; k++) {
+            map->is_dark = map->is_dark || is_dark_of(map->name, server->desc.maps[k]);
+            map->has_dark = map->has_dark || is_dark_of(server->desc.maps[k], map->name);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++)
+        if (!(server->maps[i].painter = camber_painter_create(server->cache, i, server->desc.side)))
+            return false;
+    return true;
+}
+
+static camber_status draw_map(void *user, const camber_route_request *request, camber_rendered_picture *rendered) {
+    const camber_server *server = user;
+    return camber_painter_draw(server->maps[request->map].painter, request, rendered);
+}
+
+static bool prepare_maps(void *user) {
+    const camber_server *server = user;
+    for (uint32_t i = 0; i < server->desc.map_count; i++)
+        if (camber_painter_prepare(server->maps[i].painter))
+            return true;
+    return false;
 }
 
 /* Metatiles for mod_tile are drawn only if a map is served; an archive has its own tiles. */
 static bool is_drawing(void *user) {
     camber_server *server = user;
     pthread_mutex_lock(&server->mutex);
-    const bool ready = server->view.ready && !server->view.is_archive;
+    const bool ready = server->maps[0].view.ready && !server->maps[0].view.is_archive;
     pthread_mutex_unlock(&server->mutex);
     return ready;
 }
@@ -240,9 +282,9 @@ static int start_all(camber_server *server, const char **failed) {
     const uint32_t pictures = MOST_PICTURES / (desc->side * desc->side);
     const camber_draw_queue_desc queue = {.cache = server->cache,
                                           .metrics = &server->metrics,
-                                          .draw = camber_painter_draw,
-                                          .prepare = camber_painter_prepare,
-                                          .user = server->painter,
+                                          .draw = draw_map,
+                                          .prepare = prepare_maps,
+                                          .user = server,
                                           .side = desc->side,
                                           .threads = desc->threads,
                                           .most_queued = MOST_QUEUED,
@@ -284,13 +326,12 @@ int camber_server_create(const camber_server_desc *desc, camber_server **server,
     made->page = (camber_listener){.server = made};
     made->metrics_page = (camber_listener){.server = made, .is_for_metrics = true};
     pthread_mutex_init(&made->mutex, NULL);
-    pthread_mutex_init(&made->reader_mutex, NULL);
     int cause = ENOMEM;
     made->folder = (camber_tile_folder){.path = made->desc.cache_dir, .failed = tell_failure, .user = made};
     const bool has_folder = made->desc.cache_dir && !made->desc.renderd; /* with renderd, it belongs to mod_tile */
-    if ((made->cache = camber_tile_cache_create(made->desc.cache_bytes, has_folder ? &made->folder : NULL)) &&
-        (made->painter = camber_painter_create(made->cache, made->desc.side)) &&
-        (made->clients = camber_clients_create(MOST_SECONDS)) &&
+    if ((made->cache = camber_tile_cache_create(made->desc.cache_bytes, made->desc.map_count,
+                                                has_folder ? &made->folder : NULL)) &&
+        make_maps(made) && (made->clients = camber_clients_create(MOST_SECONDS)) &&
         (!desc->edits || (made->events = camber_events_create())) && make_errors(made) && make_page(made))
         cause = start_all(made, failed);
     if (cause) {
@@ -326,6 +367,18 @@ static void forget_view(camber_content_view *view) {
         camber_body_release(view->tilejson[i / 2][i % 2]);
 }
 
+static void destroy_maps(camber_server *server) {
+    for (uint32_t i = 0; server->maps && i < server->desc.map_count; i++) {
+        camber_served_map *map = server->maps + i;
+        camber_painter_destroy(map->painter);
+        if (map->reader && map->close_reader)
+            map->close_reader(map->reader_owner);
+        forget_view(&map->view);
+        pthread_mutex_destroy(&map->reader_mutex);
+    }
+    free(server->maps);
+}
+
 void camber_server_destroy(camber_server *server) {
     if (!server)
         return;
@@ -340,19 +393,15 @@ void camber_server_destroy(camber_server *server) {
     stop(&server->page);
     stop(&server->metrics_page);
     camber_draw_queue_destroy(server->queue);
-    camber_painter_destroy(server->painter);
+    destroy_maps(server);
     camber_tile_cache_destroy(server->cache);
     camber_clients_destroy(server->clients);
     camber_events_destroy(server->events);
-    if (server->reader && server->close_reader)
-        server->close_reader(server->reader_owner);
-    forget_view(&server->view);
     for (size_t i = 0; i < sizeof server->errors / sizeof *server->errors; i++)
         camber_body_release(server->errors[i]);
     for (size_t i = 0; server->page_bodies && i < 2 * camber_page_file_count; i++)
         camber_body_release(server->page_bodies[i]);
     free(server->page_bodies);
-    pthread_mutex_destroy(&server->reader_mutex);
     pthread_mutex_destroy(&server->mutex);
     free(server);
 }
@@ -371,8 +420,11 @@ const char *camber_server_get_metrics_address(const camber_server *server) {
     return server->desc.metrics ? server->metrics_page.address : NULL;
 }
 
-static bool describe(const camber_server *server, const camber_server_content *content, camber_content_view *view) {
-    const bool has_dark = !content->reader && content->source.styles[1];
+static bool describe(const camber_server *server, const camber_served_map *map, const camber_server_content *content,
+                     camber_content_view *view) {
+    const bool has_dark = !content->reader && content->source.styles[1] && !map->has_dark;
+    char url[sizeof server->url + 128];
+    snprintf(url, sizeof url, "%s%s%s", server->url, *map->name ? "/" : "", map->name);
     struct tm parts;
     *view = (camber_content_view){
         .ready = true, .is_archive = content->reader != NULL, .has_dark = has_dark, .tileset = content->tileset};
@@ -380,10 +432,11 @@ static bool describe(const camber_server *server, const camber_server_content *c
         (void)strftime(view->last_modified, sizeof view->last_modified, "%a, %d %b %Y %H:%M:%S GMT", &parts);
     for (int dark = 0; dark < (has_dark ? 2 : 1); dark++) {
         const camber_tilejson_desc desc = {.content = content,
-                                           .url = server->url,
-                                           .theme = dark || content->is_dark ? "dark"
-                                                    : has_dark               ? "light"
-                                                                             : NULL,
+                                           .url = url,
+                                           .theme = map->has_dark                              ? "light"
+                                                    : dark || content->is_dark || map->is_dark ? "dark"
+                                                    : has_dark                                 ? "light"
+                                                                                               : NULL,
                                            .below_dark = dark,
                                            .most_ratio = server->desc.most_ratio,
                                            .edits = server->desc.edits};
@@ -395,15 +448,16 @@ static bool describe(const camber_server *server, const camber_server_content *c
 }
 
 /* Replaces the archive. The mutex ensures that no tile is being read. */
-static void exchange_reader(camber_server *server, const camber_server_content *content) {
-    pthread_mutex_lock(&server->reader_mutex);
-    if (server->reader && server->close_reader)
-        server->close_reader(server->reader_owner);
-    server->reader = content->reader;
-    server->close_reader = content->close;
-    server->reader_owner = content->owner;
-    camber_tile_cache_clear(server->cache, 0);
-    pthread_mutex_unlock(&server->reader_mutex);
+static void exchange_reader(camber_server *server, uint32_t index, const camber_server_content *content) {
+    camber_served_map *map = server->maps + index;
+    pthread_mutex_lock(&map->reader_mutex);
+    if (map->reader && map->close_reader)
+        map->close_reader(map->reader_owner);
+    map->reader = content->reader;
+    map->close_reader = content->close;
+    map->reader_owner = content->owner;
+    camber_tile_cache_clear(server->cache, index, 0);
+    pthread_mutex_unlock(&map->reader_mutex);
 }
 
 void camber_server_tell(camber_server *server, const char *error) {
@@ -416,22 +470,24 @@ void camber_server_beat(camber_server *server) {
         camber_events_beat(server->events);
 }
 
-bool camber_server_show(camber_server *server, const camber_server_content *content) {
+bool camber_server_show(camber_server *server, uint32_t index, const camber_server_content *content) {
+    camber_served_map *map = server->maps + index;
     camber_content_view view, before;
-    if (!describe(server, content, &view)) {
+    if (!describe(server, map, content, &view)) {
         forget_view(&view);
         return false;
     }
     if (content->reader) {
         (void)camber_route_find_type(camber_tiles_reader_get_info(content->reader)->type, &view.type);
-        exchange_reader(server, content);
+        exchange_reader(server, index, content);
     } else {
-        camber_painter_put(server->painter, &content->source);
+        camber_painter_put(map->painter, &content->source);
         camber_draw_queue_wake(server->queue);
     }
     pthread_mutex_lock(&server->mutex);
-    before = server->view;
-    server->view = view;
+    before = map->view;
+    map->view = view;
+    snprintf(map->title, sizeof map->title, "%s", content->name ? content->name : "");
     pthread_mutex_unlock(&server->mutex);
     forget_view(&before);
     return true;

@@ -1,7 +1,7 @@
 /* The HTTP server, based on libmicrohttpd: tiles, pictures, the page, health and metrics.
  *
  *     camber_server_create     listens at once; requests for tiles get a 503 until there is content
- *     camber_server_show       sets a map or an archive, or replaces it, without dropping requests
+ *     camber_server_show       sets one of the maps, or an archive, or replaces it, without dropping requests
  *     camber_server_destroy    accepts no more connections, finishes the requests in progress, and stops
  *
  * Only one thread may call these functions. */
@@ -27,8 +27,14 @@ typedef struct camber_server_desc {
     uint32_t threads;      /* number of threads that answer, and of threads that encode. 0: one per core */
     const char *renderd;   /* path of a socket for mod_tile's protocol. NULL: none */
     const char *cache_dir; /* folder for tiles; with renderd, for the metatiles drawn for it. NULL: none */
-    bool edits;            /* the style is being edited, so browsers must revalidate every answer */
-    bool logs_requests;    /* log_request is called for each request */
+    /* Names of the maps: map_count of them, unique, each the beginning of its map's paths (route.h). A map whose name
+     * is another one's and then /dark is its dark theme, and so is "dark" beside "". NULL: one map without a name. */
+    const char *const *maps;
+    uint32_t map_count;
+    const char *const *fonts; /* font_count folders with fonts for texts over pictures */
+    size_t font_count;
+    bool edits;         /* the style is being edited, so browsers must revalidate every answer */
+    bool logs_requests; /* log_request is called for each request */
     void (*log_request)(void *user, const char *line); /* line: JSON without a line break. Several threads call it */
     camber_log_fn *log;                                /* receives failures of drawing and encoding */
     void *user;                                        /* passed to both functions */
@@ -62,8 +68,9 @@ const char *camber_server_get_url(const camber_server *server);
  * not served. */
 const char *camber_server_get_address(const camber_server *server);
 const char *camber_server_get_metrics_address(const camber_server *server);
-/* Returns false if there is no memory; then the previous content stays, and the caller closes the new one. */
-bool camber_server_show(camber_server *server, const camber_server_content *content);
+/* map: its index. Returns false if there is no memory; then the previous content stays, and the caller closes the new
+ * one. */
+bool camber_server_show(camber_server *server, uint32_t map, const camber_server_content *content);
 /* While a style is edited: tells all listeners that it has been reloaded, or why that failed (error is not NULL). */
 void camber_server_tell(camber_server *server, const char *error);
 /* Detects listeners that have disconnected. Call it every few seconds. */

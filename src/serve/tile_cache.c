@@ -29,22 +29,26 @@ struct camber_tile_cache {
     cached_tile **buckets; /* bucket_count of them, a power of two */
     size_t bucket_count, most_bytes;
     cached_tile *newest, *oldest;
-    uint64_t generation, input;
+    struct {
+        uint64_t generation, input;
+    } * maps; /* by the index of the map */
     camber_tile_folder *folder;
     camber_tile_cache_stats stats;
 };
 
 static size_t bucket_of(const camber_tile_cache *cache, camber_tile_key key) {
-    return (size_t)camber_mix(camber_mix(0, key.place), key.look) & (cache->bucket_count - 1);
+    return (size_t)camber_mix(camber_mix(key.map, key.place), key.look) & (cache->bucket_count - 1);
 }
 
 static size_t cost_of(const camber_body *body) {
     return sizeof(cached_tile) + 2 * sizeof(cached_tile *) + sizeof *body + body->size_bytes;
 }
 
-camber_tile_cache *camber_tile_cache_create(size_t most_bytes, camber_tile_folder *folder) {
+camber_tile_cache *camber_tile_cache_create(size_t most_bytes, uint32_t map_count, camber_tile_folder *folder) {
     camber_tile_cache *cache = calloc(1, sizeof *cache);
-    if (!cache || !(cache->buckets = calloc(FIRST_BUCKETS, sizeof(cached_tile *)))) {
+    if (!cache || !(cache->buckets = calloc(FIRST_BUCKETS, sizeof(cached_tile *))) ||
+        !(cache->maps = calloc(map_count, sizeof *cache->maps))) {
+        free(cache ? cache->buckets : NULL);
         free(cache);
         return NULL;
     }
@@ -70,7 +74,7 @@ static void list_first(camber_tile_cache *cache, cached_tile *tile) {
 /* Returns the link to the tile with this key; the link is NULL if there is no such tile. */
 static cached_tile **find_link(camber_tile_cache *cache, camber_tile_key key) {
     cached_tile **link = cache->buckets + bucket_of(cache, key);
-    while (*link && ((*link)->key.place != key.place || (*link)->key.look != key.look))
+    while (*link && ((*link)->key.place != key.place || (*link)->key.look != key.look || (*link)->key.map != key.map))
         link = &(*link)->next;
     return link;
 }
@@ -87,16 +91,21 @@ static void drop(camber_tile_cache *cache, cached_tile **link) {
     free(tile);
 }
 
-static void drop_all(camber_tile_cache *cache) {
-    while (cache->oldest)
-        drop(cache, find_link(cache, cache->oldest->key));
+static void drop_map(camber_tile_cache *cache, uint32_t map) {
+    for (cached_tile *tile = cache->oldest, *newer; tile; tile = newer) {
+        newer = tile->newer;
+        if (tile->key.map == map)
+            drop(cache, find_link(cache, tile->key));
+    }
 }
 
 void camber_tile_cache_destroy(camber_tile_cache *cache) {
     if (!cache)
         return;
-    drop_all(cache);
+    while (cache->oldest)
+        drop(cache, find_link(cache, cache->oldest->key));
     pthread_mutex_destroy(&cache->mutex);
+    free(cache->maps);
     free(cache->buckets);
     free(cache);
 }
@@ -118,8 +127,8 @@ static void grow_buckets(camber_tile_cache *cache) {
 }
 
 /* Returns the input whose tiles are in the folder; 0 if there are none, or there is no folder. */
-static uint64_t stored_input(const camber_tile_cache *cache) {
-    return cache->folder ? cache->input : 0;
+static uint64_t stored_input(const camber_tile_cache *cache, uint32_t map) {
+    return cache->folder ? cache->maps[map].input : 0;
 }
 
 /* Keeps a tile in memory, if there is room. Returns the input under which the folder should store it; 0 if it should
@@ -130,8 +139,8 @@ static uint64_t keep(camber_tile_cache *cache, camber_tile_key key, camber_body 
     if (tile)
         *tile = (cached_tile){.key = key, .body = body};
     pthread_mutex_lock(&cache->mutex);
-    const bool current = generation == cache->generation;
-    const uint64_t input = current ? stored_input(cache) : 0;
+    const bool current = generation == cache->maps[key.map].generation;
+    const uint64_t input = current ? stored_input(cache, key.map) : 0;
     cache->stats.folder_hits += from_folder;
     if (current && tile) {
         drop(cache, find_link(cache, key));
@@ -168,25 +177,25 @@ camber_body *camber_tile_cache_get(camber_tile_cache *cache, camber_tile_key key
     cache->stats.hits += tile != NULL;
     cache->stats.misses += tile == NULL;
     camber_body *body = tile ? camber_body_hold(tile->body) : NULL;
-    const uint64_t input = stored_input(cache), generation = cache->generation;
+    const uint64_t input = stored_input(cache, key.map), generation = cache->maps[key.map].generation;
     pthread_mutex_unlock(&cache->mutex);
     if (!body && input && (body = camber_tile_folder_get(cache->folder, input, key)) != NULL)
         (void)keep(cache, key, body, generation, true);
     return body;
 }
 
-uint64_t camber_tile_cache_get_generation(camber_tile_cache *cache) {
+uint64_t camber_tile_cache_get_generation(camber_tile_cache *cache, uint32_t map) {
     pthread_mutex_lock(&cache->mutex);
-    const uint64_t generation = cache->generation;
+    const uint64_t generation = cache->maps[map].generation;
     pthread_mutex_unlock(&cache->mutex);
     return generation;
 }
 
-void camber_tile_cache_clear(camber_tile_cache *cache, uint64_t input) {
+void camber_tile_cache_clear(camber_tile_cache *cache, uint32_t map, uint64_t input) {
     pthread_mutex_lock(&cache->mutex);
-    drop_all(cache);
-    cache->input = input;
-    cache->generation++;
+    drop_map(cache, map);
+    cache->maps[map].input = input;
+    cache->maps[map].generation++;
     pthread_mutex_unlock(&cache->mutex);
 }
 

@@ -88,6 +88,7 @@ void camber_fonts_destroy(camber_fonts *fonts) {
     camber_font_index_free(&fonts->index);
     free_strings(context, fonts->folders, fonts->folder_count);
     camber_shaping_free(context, &fonts->shaping);
+    camber_text_memo_free(context, fonts->memo);
     camber_free(context, fonts->entry_sources);
     camber_free(context, fonts->glyphs);
     camber_free(context, fonts->stacks);

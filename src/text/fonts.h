@@ -73,6 +73,7 @@ struct camber_fonts {
     uint64_t *told; /* hashes of the names and scripts that a warning has named */
     size_t told_count, told_capacity;
     camber_shaping shaping;
+    struct camber_text_memo *memo; /* texts that were shaped (memo.c); NULL: none yet */
 };
 
 /* Finds the stack of a run. Its index stays valid, but pointers to stacks do not. */
@@ -85,5 +86,17 @@ camber_status camber_fonts_find_source(camber_fonts *fonts, uint32_t stack, cons
 bool camber_glyph_source_has(const camber_glyph_source *source, uint32_t code);
 /* Finds the number of a glyph in the set. */
 camber_status camber_fonts_find_glyph(camber_fonts *fonts, uint32_t source, uint32_t number, uint32_t *glyph);
+
+/* Everything that a text depends on: two texts with equal bytes are equal. */
+typedef struct camber_text_key {
+    const void *bytes;
+    size_t size_bytes;
+    uint64_t hash; /* of the bytes */
+} camber_text_key;
+
+/* Does the work of camber_text_shape, but copies a text that was shaped for the same key if it is still remembered. */
+camber_status camber_text_recall(camber_fonts *fonts, const camber_text_key *key, const camber_text_desc *desc,
+                                 camber_text **text);
+void camber_text_memo_free(camber_context *context, struct camber_text_memo *memo);
 
 #endif

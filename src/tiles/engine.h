@@ -28,6 +28,7 @@ struct camber_tiles_engine {
     camber_workers workers;
     camber_mesh *mesh;
     camber_label_things things; /* context is NULL until they are found */
+    camber_label_shelf shelf;
     camber_engine_zoom zooms[CAMBER_LARGEST_TILE_ZOOM + 1];
     double census_ms, make_ms, draw_ms;
 };

@@ -13,7 +13,7 @@
  * are placed twice. An engine that draws on demand places a metatile at a time, which takes the least time for the
  * first. */
 enum { BLOCK_THINGS = 1 << 16 };
-/* The memory that the blocks of a zoom may take before old ones are dropped. */
+/* The memory that the blocks of all zooms may take before old ones are dropped. */
 static const size_t KEPT_BYTES = (size_t)24 << 20;
 
 camber_status camber_engine_get_labels(camber_tiles_engine *engine, int zoom, camber_zoom_labels **labels) {
@@ -29,13 +29,14 @@ camber_status camber_engine_get_labels(camber_tiles_engine *engine, int zoom, ca
         return status;
     }
     const bool on_demand = engine->desc.on_demand_side > 0;
+    engine->shelf.limit_bytes = KEPT_BYTES;
     const camber_zoom_labels_desc desc = {.features = engine->features,
                                           .things = &engine->things,
+                                          .shelf = &engine->shelf,
                                           .zoom = it->plan->view.zoom,
                                           .least_importance = (double)it->plan->least_importance,
                                           .finest_level = camber_metatile_level(zoom, camber_engine_side(engine, zoom)),
-                                          .block_things = on_demand ? 0 : BLOCK_THINGS,
-                                          .kept_bytes = KEPT_BYTES};
+                                          .block_things = on_demand ? 0 : BLOCK_THINGS};
     status = camber_zoom_labels_create(&desc, &it->labels);
     *labels = it->labels;
     return status;

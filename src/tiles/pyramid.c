@@ -37,7 +37,8 @@ typedef struct pyramid {
     camber_tiles_stats stats;
     char fingerprint[CAMBER_FINGERPRINT_SIZE];
     double done_cost;
-    double weight; /* of the next picture: see camber_encode_job */
+    uint64_t done_tiles, wanted_tiles; /* of the schedule's tasks */
+    double weight;                     /* of the next picture: see camber_encode_job */
     /* A tile that shows only the background, for tiles that are kept although they are empty. */
     uint8_t *blank;
     size_t blank_bytes, blank_capacity;
@@ -215,7 +216,13 @@ static camber_status draw_zoom(pyramid *p, size_t first, size_t end) {
     for (size_t i = first; i < end && status == CAMBER_OK; i++) {
         status = do_task(p, s->tasks + i);
         p->done_cost += camber_task_cost(s->tasks + i);
-        camber_progress(p->context, "drawing tiles", s->cost > 0.0 ? p->done_cost / s->cost : -1.0);
+        p->done_tiles += count_bits(s->tasks[i].wanted);
+        camber_progress_tell(p->context,
+                             &(camber_progress_info){.stage = "drawing tiles",
+                                                     .fraction = s->cost > 0.0 ? p->done_cost / s->cost : -1.0,
+                                                     .unit = "tiles",
+                                                     .done = p->done_tiles,
+                                                     .total = p->wanted_tiles});
     }
     while (status == CAMBER_OK && p->engine->desc.meshes && camber_encode_queue_is_busy(p->queue))
         status = write_ready(p, true); /* encoding meshes needs the zoom's plan */
@@ -247,12 +254,20 @@ static size_t find_tasks(const camber_schedule *schedule, int zoom, size_t *end)
     return first;
 }
 
+static uint64_t count_wanted(const camber_schedule *schedule) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < schedule->count; i++)
+        count += count_bits(schedule->tasks[i].wanted);
+    return count;
+}
+
 /* Draws zoom by zoom, in the order of the archive, so that the archive need not copy tiles. If points are freed on the
  * way, the deepest zoom is drawn first: each zoom leaves fewer points for the next, and the lowest zooms, whose
  * networks contain all lines, are drawn when the least memory is in use. */
 static camber_status draw_all(pyramid *p) {
     const bool spends = spends_points(p);
     camber_status status = CAMBER_OK;
+    p->wanted_tiles = count_wanted(&p->schedule);
     for (int n = 0; n <= p->area.max_zoom - p->area.min_zoom && status == CAMBER_OK; n++) {
         const int zoom = spends ? p->area.max_zoom - n : p->area.min_zoom + n;
         size_t end;
@@ -326,9 +341,8 @@ static camber_status try_all(pyramid *p) {
         if (status == CAMBER_OK)
             camber_engine_forget_zoom(p->engine, s->tasks[i].zoom);
     }
-    p->stats.tiles = p->stats.background = 0;
-    for (size_t i = 0; i < s->count; i++)
-        p->stats.tiles += count_bits(s->tasks[i].wanted);
+    p->stats.tiles = count_wanted(s);
+    p->stats.background = 0;
     p->stats.units = s->count;
     p->stats.points = 0;
     for (size_t i = 0; i < s->count; i++)

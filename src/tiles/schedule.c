@@ -175,8 +175,8 @@ camber_status camber_schedule_make(camber_tiles_engine *engine, const camber_til
     *schedule = (camber_schedule){.context = engine->context};
     for (int zoom = area->min_zoom; zoom <= area->max_zoom && status == CAMBER_OK; zoom++) {
         camber_engine_zoom *opened;
-        camber_progress(engine->context, "finding where lines are",
-                        (double)(zoom - area->min_zoom) / (area->max_zoom - area->min_zoom + 1));
+        camber_progress_count(engine->context, "finding where lines are", "zooms", (uint64_t)(zoom - area->min_zoom),
+                              (uint64_t)(area->max_zoom - area->min_zoom + 1));
         status = camber_engine_open_zoom(engine, zoom, &opened);
         if (status == CAMBER_OK)
             status = camber_engine_add_label_tiles(engine, zoom, area);

@@ -86,7 +86,7 @@ camber_status camber_validation_run(camber_validation *v, const camber_validatio
     v->results.wanted = 0; /* this group does not count, because devices are opened in any case */
     for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
         if (desc->host.progress)
-            desc->host.progress(desc->host.user, (double)i / (double)count);
+            desc->host.progress(desc->host.user, i, count);
         status = input ? check_input(v, input) : check_scene(v, i);
     }
     if (status == CAMBER_OK && !input && camber_results_group(&v->results, "offset lines"))

@@ -21,8 +21,8 @@ typedef struct camber_validation_host {
     void (*take_message)(void *user, char *text, size_t size);
     /* Writes the image of a failure, and returns the name of its file, to be freed with free. May be NULL. */
     camber_status (*write_image)(void *user, const camber_failure_image *image, char **path);
-    /* Reports which share of the scenes is done, 0 to 1. May be NULL. */
-    void (*progress)(void *user, double fraction);
+    /* Reports how many scenes are done; count 1: the caller's input. May be NULL. */
+    void (*progress)(void *user, size_t done, size_t count);
     void *user;
 } camber_validation_host;
 

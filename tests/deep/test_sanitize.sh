@@ -22,6 +22,8 @@ run)
     # Real cities are for ./dev test --sanitize, and test_kernels is for oclgrind: the other tests call the same. So do
     # some that draw or read for minutes what others do, too; and test_faults lets threads fail elsewhere.
     unset CAMBER_DATA
+    # Each test says which back end draws.
+    unset CAMBER_CPU
     # Shares run side by side, and each writes a log in a folder of its own.
     folder=$1/share-${2%/*}
     mkdir -p "$folder"

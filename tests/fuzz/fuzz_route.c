@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const camber_route_limits LIMITS = {4, 2048};
+static const char *const NAMES[] = {"a", "ab", "a/dark"};
+static const camber_route_limits LIMITS = {4, 2048, NULL, 0}, NAMED = {4, 2048, NAMES, 3};
 
 static bool is_within(double number, double least, double most) {
     return number >= least && number <= most;
@@ -19,6 +20,9 @@ static void check_tile(const camber_route_request *r) {
 static void check_picture(const camber_route_request *r) {
     REQUIRE(is_within(r->longitude, -180, 180) && is_within(r->latitude, -90, 90) && is_within(r->map_zoom, 0, 24));
     REQUIRE(is_within(r->bearing_deg, -360, 360) && is_within(r->pitch_deg, 0, 85));
+    if (r->view == CAMBER_ROUTE_BOUNDS)
+        REQUIRE(is_within(r->bounds[0], -180, 180) && is_within(r->bounds[2], -180, 180) &&
+                is_within(r->bounds[1], -90, r->bounds[3]) && r->bounds[3] <= 90);
     REQUIRE(r->width >= 1 && r->height >= 1 && r->type <= CAMBER_ROUTE_WEBP);
     REQUIRE((uint64_t)r->width * r->ratio <= LIMITS.most_px && (uint64_t)r->height * r->ratio <= LIMITS.most_px);
 }
@@ -39,9 +43,26 @@ static void check(const camber_route_request *r, const char *path) {
         check_tile(r);
     if (r->route == CAMBER_ROUTE_STATIC)
         check_picture(r);
-    if (r->route == CAMBER_ROUTE_PAGE)
+    if (r->route == CAMBER_ROUTE_PAGE || r->route == CAMBER_ROUTE_FOLDER)
         check_name(r, path);
     REQUIRE(!r->dark || picture || r->route == CAMBER_ROUTE_TILEJSON);
+}
+
+static void check_status(const camber_route_limits *limits, const char *method, const char *path) {
+    camber_route_request request, again;
+    memset(&request, 0xa5, sizeof request);
+    memset(&again, 0x5a, sizeof again);
+    const int status = camber_route_parse(limits, method, path, &request);
+    REQUIRE(status == 200 || status == 400 || status == 404 || status == 405);
+    const bool posts = strcmp(method, "POST") == 0, reads = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
+    REQUIRE((status == 405) == (!reads && !(posts && request.route == CAMBER_ROUTE_STATIC)));
+    REQUIRE(camber_route_parse(limits, method, path, &again) == status && again.route == request.route);
+    if (status == 200)
+        check(&request, path);
+    else
+        REQUIRE(request.route == (status == 400 ? CAMBER_ROUTE_STATIC : CAMBER_ROUTE_NONE));
+    if (status == 200)
+        REQUIRE(request.map == CAMBER_ROUTE_NO_MAP || request.map < (limits->map_count ? limits->map_count : 1));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
@@ -53,17 +74,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
         path++;
     if (*path)
         *path++ = 0;
-    camber_route_request request, again;
-    memset(&request, 0xa5, sizeof request);
-    memset(&again, 0x5a, sizeof again);
-    const int status = camber_route_parse(&LIMITS, text, path, &request);
-    REQUIRE(status == 200 || status == 400 || status == 404 || status == 405);
-    REQUIRE((status == 405) == (strcmp(text, "GET") != 0 && strcmp(text, "HEAD") != 0));
-    REQUIRE(camber_route_parse(&LIMITS, text, path, &again) == status && again.route == request.route);
-    if (status == 200)
-        check(&request, path);
-    else
-        REQUIRE(request.route == (status == 400 ? CAMBER_ROUTE_STATIC : CAMBER_ROUTE_NONE));
+    check_status(&LIMITS, text, path);
+    check_status(&NAMED, text, path);
     free(text);
     return 0;
 }

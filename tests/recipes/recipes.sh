@@ -263,6 +263,7 @@ for system; do
         echo "$system: $recipe: works, $((SECONDS - begun)) s"
     else
         failures=$((failures + 1))
+        awk '/\*\*\*(Failed|Timeout|Exception)/ { found = 1 } /^ *Start +[0-9]+:/ { found = 0 } found' "$run/log" | head -n 400
         tail -n 60 "$run/log"
         echo "FAILED: $system: $recipe, after $((SECONDS - begun)) s"
     fi

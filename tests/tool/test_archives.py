@@ -277,6 +277,7 @@ def check_findings(path, what):
     expect(not what or any(what in one["message"] for one in found["findings"]), f"{what!r} is not told: {found}")
     lines = tiles("verify", path, status=1 if what else 0).stderr
     expect(not what or what in lines, f"{what!r} has no line: {lines}")
+    expect(what or f"{path}: no problem found in " in lines, f"{path}: nothing says that it was verified: {lines}")
 
 
 def test_pmtiles_rules():

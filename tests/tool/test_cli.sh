@@ -122,6 +122,15 @@ for verb in render tessellate "tiles --max-zoom 3"; do
     says '^camber: -o b\.png: is the second output, after -o a\.png; give one of them$'
 done
 expect 2 "two outputs of merge" tiles merge "$osm" -o a.pmtiles -o a.pmtiles
+expect 2 "two boxes" render "$osm" -o a.png --bbox 0,0,1,1 --bbox 1,1,2,2
+says '^camber: --bbox 1,1,2,2: is the second --bbox; give one of them$'
+expect 2 "two layers" render "$osm" -o a.png --layer a --layer b
+expect 2 "two files of polylines" bench --polylines a --polylines b
+# The last of two settings counts.
+expect 2 "the last of two sizes" render "$osm" -o a.png --size 5x5 --size 0x5
+says '^camber: --size 0x5: '
+expect 0 "the last of two formats" render "$osm" -o a.png --format webp --format png --size 8x8
+rm -f a.png
 expect 2 "png from tessellate" tessellate "$osm" -o a.png
 expect 2 "glb from render" render "$osm" -o a.glb
 expect 2 "glb by its format" render "$osm" -o a.png --format glb
@@ -202,9 +211,22 @@ has "$tmp/stdout" '^      --format png|png8|webp'
 lacks "$tmp/stdout" 'glb'
 expect 0 "help of tessellate, for its format" tessellate --help
 has "$tmp/stdout" '^      --format glb  '
-expect 0 "help of all verbs, for former names" --help
-has "$tmp/stdout" '--renew FILE' '--format png|png8|webp|glb'
+expect 0 "help of tiles, for former names" help tiles
+has "$tmp/stdout" '--renew FILE' '--format png|png8|webp|glb' '^Tiles:$'
 lacks "$tmp/stdout" '--tiles '
+# Groups, and an example of each verb, which the parser takes.
+expect 0 "help by groups" --help
+has "$tmp/stdout" '^Draw:$' '^Check and measure:$' '^This machine, and help:$'
+for verb in render tessellate compare validate bench style tiles serve info; do
+    expect 0 "the example of $verb" help $verb
+    example=$(sed -n '/^Example:$/{n;s/^  //p}' "$tmp/stdout")
+    case $example in "camber $verb"*) ;; *) fail "its example is '$example'" ;; esac
+    expect 0 "the example of $verb, in the help of all" --help
+    grep -qxF "                $example" "$tmp/stdout" || fail "lacks $example"
+    expect 0 "the example of $verb, read by the parser" info --help
+    eval "set -- ${example#camber }"
+    expect 0 "the options of the example of $verb" "$@" --help
+done
 expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version
@@ -272,12 +294,13 @@ has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not avail
 
 # ---- Render ----
 
-expect 0 "render" render "$osm" -o city.png --size 300x200
+expect 0 "render" render "$osm" -o city.png --size 300x200 -v
 is_png city.png 300 200
 has city.png "camber [0-9]"
 lacks city.png 'OpenStreetMap' # its tiles do not say whose they are
 lacks "$tmp/stderr" 'OpenStreetMap'
-says 'city.png'
+says '^city.png: 300 x 200 px, zoom [0-9.]* at [-0-9., ]*, [0-9.]* KB, [0-9.]* s$'
+tail -n 1 "$tmp/stderr" | grep -q '^city.png: ' || fail "the last line does not say what came out"
 [ $own = gl ] && says 'triangles (strip), [0-9]* draw calls*$' || says 'triangles (strip), drawn by OpenCL kernels$'
 adds_up
 cp city.png "$tmp/in/city.png"
@@ -362,7 +385,7 @@ verify 69
 says 'EGL: .*; install libegl1'
 expect 0 "few draw calls" render "$osm" --no-labels -o calls.png --size 512x512 --json --draw gl
 has "$tmp/stdout" '"draw_calls": [1-4],'
-expect 0 "draw calls in words" render "$osm" --no-labels -o calls.png -f --size 64x64 --draw gl
+expect 0 "draw calls in words" render "$osm" --no-labels -o calls.png -f --size 64x64 --draw gl -v
 says 'triangles (strip), [1-4] draw calls*$'
 adds_up
 expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
@@ -644,7 +667,8 @@ lines=$tmp/in/lines.bin
 expect 0 "validate, a line a group" validate --polylines "$lines" --size 256x256 --draw cl --method strip --windows 8
 passes 4
 has "$tmp/stdout" ': meshes as the CPU twin.s: [0-9]* checks' ': pictures as the CPU twin' ': pixels as the oracle' ': networks under five cameras'
-says ' checks in [0-9]* s: 0 failed, .*; --full '
+says '^--full draws by every method, '
+says '^validate: [0-9,]* checks, 0 failed, [0-9]* skipped, [0-9.]* .*s$'
 head -c 4 "$lines" >"$tmp/in/short.bin"
 expect 0 "validate" validate -v --only roads --method strip --windows 8 --junit built-in.xml --pictures pictures
 passes 60
@@ -795,7 +819,7 @@ for type in '6 its tiles are MLT .*; make it again with MVT' '5 its tiles are pi
 done
 # A parallel across the world, and a line that goes the short way, over the antimeridian.
 echo '{"type":"MultiLineString","coordinates":[[[-180,0],[180,0]],[[-100,40],[100,40]]]}' >"$tmp/in/par.geojson"
-expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 300x300
+expect 0 "lines across the world" render "$tmp/in/par.geojson" -o a.png --center 0,0 --zoom 0 --size 300x300 -v
 says '^1 feature, 3 polylines, 6 points, '
 says '^antimeridian: crossed 1 time; '
 expect 0 "lines across the world, as JSON" render "$tmp/in/par.geojson" -o a.png -f --center 0,0 --zoom 0 --json
@@ -804,6 +828,8 @@ rm -f a.png
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
+lacks "$tmp/stderr" polyline # counts are for -v
+expect 0 "one line, at length" render "$tmp/in/line.geojson" -o a.png -f --size 64x64 -v
 says '^1 feature, 1 polyline, 2 points, '
 lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
 lacks "$tmp/stderr" OpenStreetMap
@@ -839,23 +865,23 @@ rm -f a.png
 ring='[[0,0],[0.004,0],[0.004,0.004],[0,0.004]]' # its outline is closed, too
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring]}}" >"$tmp/in/open.geojson"
 echo '{"version":8,"sources":{},"layers":[{"id":"a","type":"fill","paint":{"fill-outline-color":"#d00"}}]}' >"$tmp/in/outline.json"
-expect 0 "an open ring" render "$tmp/in/open.geojson" --style "$tmp/in/outline.json" -o a.png
+expect 0 "an open ring" render "$tmp/in/open.geojson" --style "$tmp/in/outline.json" -o a.png -v
 says '^camber: warning: .*1 rings of areas were not closed; they are now$'
 says ' 2 polylines, 10 points,'
 says '^areas: 1 ring closed$'
 flat='[[0,0],[0.004,0.004],[0,0]]'
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$ring,$ring,$flat]}}" >"$tmp/in/odd.geojson"
-expect 0 "an open ring, its hole and one without area" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f
+expect 0 "an open ring, its hole and one without area" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f -v
 says '^areas: 2 rings closed, 1 ring turned, 1 ring without area left out$'
 expect 0 "rings that are counted" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f --json
 has "$tmp/stdout" '"crossing_rings": 0' '"closed_rings": 2' '"turned_rings": 1' '"empty_rings": 1' '"open_relations": 0'
 tie='[[0,0],[0.004,0.004],[0.004,0],[0,0.004],[0,0]]'
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$tie]}}" >"$tmp/in/tie.geojson"
-expect 0 "a ring that crosses itself" render "$tmp/in/tie.geojson" --style "$tmp/in/outline.json" -o a.png -f
+expect 0 "a ring that crosses itself" render "$tmp/in/tie.geojson" --style "$tmp/in/outline.json" -o a.png -f -v
 says '^areas: 1 self-crossing ring kept$'
 odd='[[0,0],[0.004,0],[0.008,0],[0.004,0],[0.004,0.004],[0,0]],[[1,1],[1,1.01],[1.01,1],[1,1]]'
 echo "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[$odd]}}" >"$tmp/in/odd.geojson"
-expect 0 "a spike, and a hole outside" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f
+expect 0 "a spike, and a hole outside" render "$tmp/in/odd.geojson" --style "$tmp/in/outline.json" -o a.png -f -v
 says '^areas: 1 ring with a spike, 1 hole filled outside of areas$'
 rm -f a.png
 cat >"$tmp/in/roads.osm" <<'XML'
@@ -868,7 +894,7 @@ XML
 # Attribute filters: any key of OpenStreetMap, and what its driver makes on demand; a warning where nothing passes.
 for where in "lit = 'yes'" "\"highway\" = 'primary'" "osm_id = '10'" "other_tags LIKE '%lit%'" \
     "all_tags LIKE '%lit%'"; do
-    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where"
+    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where" -v
     says '^1 feature, '
     lacks "$tmp/stderr" warning
 done
@@ -896,7 +922,8 @@ expect 0 "OpenStreetMap's own format, not signed" render "$tmp/in/roads.osm" -o 
 lacks a.png Copyright
 lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
-expect 0 "one line, tessellated" tessellate "$tmp/in/line.geojson" -o a.glb
+expect 0 "one line, tessellated" tessellate "$tmp/in/line.geojson" -o a.glb -v
+says '^a.glb: [0-9]* vertices, [0-9]* triangles (strip), [0-9.]* [KB a-z]*, [0-9.]* s$'
 says '^1 feature, 1 polyline, 2 points$'
 adds_up
 rm -f a.glb
@@ -1216,7 +1243,7 @@ done
 awk 'BEGIN { print "<osm version=\"0.6\">"
     for (i = 1; i <= 8000; i++) printf "<node id=\"%d\" lat=\"%.4f\" lon=\"1\"/>\n", i * 1000, 1 + i / 10000
     print "<way id=\"1\"><nd ref=\"1000\"/><nd ref=\"2000\"/><tag k=\"highway\" v=\"primary\"/></way></osm>" }' >"$tmp/in/nodes.osm"
-run env -C /proc -u TMPDIR OSM_MAX_TMPFILE_SIZE=1 "$tool" render "$tmp/in/nodes.osm" -o "$tmp/out/nodes.png" --size 64x64
+run env -C /proc -u TMPDIR OSM_MAX_TMPFILE_SIZE=1 "$tool" render "$tmp/in/nodes.osm" -o "$tmp/out/nodes.png" --size 64x64 -v
 name="no TMPDIR"
 verify 0
 says '^1 feature, '

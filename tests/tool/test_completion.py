@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Completion in bash and zsh: the shells offer what --help lists, and files where files are read.
+"""Completion in bash, fish and zsh: the shells offer what --help lists, and files where files are read.
 
     test_completion.py CAMBER
 
-In bash the function is called as bash calls it. In zsh a completion is asked for in a terminal, and the list that zsh
-shows is read. Exits with 77, and a reason, where there is no zsh; bash has been tested by then.
+In bash the function is called as bash calls it; fish is asked what it would complete. In zsh a completion is asked for
+in a terminal, and the list that zsh shows is read. Exits with 77, and a reason, where there is no fish or no zsh; the
+others have been tested by then.
 """
 
 import os
@@ -56,6 +57,16 @@ def complete_in_bash(words):
     if run.returncode or run.stderr:
         failures.append("bash: %s: status %d: %s" % (words, run.returncode, run.stderr))
     return set(run.stdout.split("\n")) - {""}
+
+
+def complete_in_fish(words):
+    """fish lists options that begin with a dash only where the word does."""
+    line = " ".join(words)
+    run = subprocess.run(["fish", "--no-config", "-c", "source completion.fish; complete -C $argv[1]", line], cwd=folder,
+                         capture_output=True, text=True)
+    if run.returncode or run.stderr:
+        failures.append("fish: %s: status %d: %s" % (words, run.returncode, run.stderr))
+    return {line.split("\t")[0].replace("\\ ", " ") for line in run.stdout.split("\n")} - {""}
 
 
 class Zsh:
@@ -120,11 +131,12 @@ def cases():
     yield ["camber", "style", ""], ["check", "eval"], ["roads.gpkg"]
     yield ["camber", "style", "check", ""], ["transit", "roads.gpkg"], ["eval"]
     yield ["camber", "render", "--", ""], ["roads.gpkg"], ["--size"]
-    yield ["camber", "--completion", ""], ["bash", "zsh"], []
+    yield ["camber", "--completion", ""], ["bash", "fish", "zsh"], []
+    yield ["camber", "tiles", ""], ["show", "verify", "merge", "roads.gpkg"], []
 
 
 def main():
-    for shell in ("bash", "zsh"):
+    for shell in ("bash", "fish", "zsh"):
         text = subprocess.run([tool, "--completion", shell], capture_output=True, text=True, check=True).stdout
         with open(os.path.join(folder, "completion." + shell), "w") as file:
             file.write(text)
@@ -141,18 +153,24 @@ def main():
         wanted, found = options_of(verb), complete_in_bash(["camber", verb, "--"])
         if wanted != found:
             failures.append("bash: options of %s: %s" % (verb, sorted(wanted ^ found)))
-    if not shutil.which("zsh"):
-        reason = "no zsh here (Debian: zsh); bash passed"
-    elif not has_terminals():
-        reason = "no terminals here (/dev/pts); bash passed"
+    reasons = []
+    if shutil.which("fish"):
+        test_fish()
     else:
-        reason = test_zsh()
+        reasons.append("no fish here (Debian: fish)")
+    if not shutil.which("zsh"):
+        reasons.append("no zsh here (Debian: zsh)")
+    elif not has_terminals():
+        reasons.append("no terminals here (/dev/pts) for zsh")
+    else:
+        test_zsh()
+    reason = "; ".join(reasons)
     for failure in failures:
         print(failure)
     if failures:
         return 1
     if reason:
-        print(reason)
+        print(reason + "; the others passed")
     return 77 if reason else 0
 
 
@@ -164,6 +182,18 @@ def has_terminals():
     except OSError:
         return False
     return True
+
+
+def test_fish():
+    for words, has, lacks in cases():
+        check("fish", words, has, lacks, complete_in_fish(words))
+    check("fish", "--format=", ["--format=png", "--format=webp"], ["--format=glb"],
+          complete_in_fish(["camber", "render", "--format="]))
+    check("fish", "--root", ["a_folder/"], ["roads.gpkg"], complete_in_fish(["camber", "render", "--root", ""]))
+    for verb in ("render", "tessellate", "compare", "validate", "bench", "info", "style", "tiles", "serve"):
+        wanted, found = options_of(verb), {word for word in complete_in_fish(["camber", verb, "--"])}
+        if wanted != found:
+            failures.append("fish: options of %s: %s" % (verb, sorted(wanted ^ found)))
 
 
 def test_zsh():

@@ -30,6 +30,7 @@ done
 # Completion, where the shells look for it.
 bash -n "$folder/usr/share/bash-completion/completions/camber"
 grep -qx '#compdef camber' "$folder/usr/share/zsh/site-functions/_camber"
+grep -q "^complete -c camber -n .__camber_in render. -l output" "$folder/usr/share/fish/vendor_completions.d/camber.fish"
 
 cat >"$folder/core.c" <<'C'
 #include <camber_proof.h>

@@ -9,6 +9,8 @@ import {comparePictures, cornerAt, findPort, launchBrowser, PATIENCE_MS, skip, s
 
 const CENTER = [-122.0268, 36.9735]; // Santa Cruz
 const SEA = [-122.1, 36.952];          // near it, in the bounds of INPUT
+const town = join(import.meta.dirname, '../data/monaco/monaco.osm.pbf'), TOWN_CENTER = [7.4235, 43.7365], TOWN_ZOOM = 15;
+const OFF_EDGES = 200; // pixels of lines that turn back outside a tile, which may differ by more than a level
 const DRAWN = ['--layer', 'roads']; // tiles of an archive would be served as they are
 const WIDE = {width: 1280, height: 720}, PHONE = {width: 360, height: 740};
 const ZOOM = 14;
@@ -132,6 +134,59 @@ async function checkMoves(page) {
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(from => Number(location.hash.split('/')[2]) > from, east);
     check(true, 'the right arrow moves it east');
+}
+
+// The view that the page shows: the place of a tile in the window tells it to the pixel.
+function findView(page) {
+    return page.evaluate(() => {
+        const tile = [...document.querySelectorAll('img.leaflet-tile-loaded')].find(one =>
+            Math.abs(one.getBoundingClientRect().width - one.width) < 0.5);
+        const [zoom, column, row] = tile.src.match(/(\d+)\/(\d+)\/(\d+)(@2x)?\.png/).slice(1, 4).map(Number);
+        const box = tile.getBoundingClientRect(), world = 256 * 2 ** zoom;
+        const x = (256 * column - box.left + innerWidth / 2) / world, y = (256 * row - box.top + innerHeight / 2) / world;
+        return {zoom: zoom - 1, center: [x * 360 - 180, Math.atan(Math.sinh((1 - 2 * y) * Math.PI)) * 180 / Math.PI]};
+    });
+}
+
+// A town with names: while it moves, zooms and gets dark, the window shows what camber render draws of the same view.
+async function checkLabels(browser, blank) {
+    const server = await startServer(town);
+    const page = await openPage(browser, server.url + hashAt(TOWN_CENTER, TOWN_ZOOM));
+    const compare = async (name, theme) => {
+        await waitForTiles(page);
+        const {zoom, center} = await findView(page), drawn = [[], ['--no-labels']].map(more => {
+            const file = join(folder, `labels-${name}-drawn.png`);
+            execFileSync(tool, ['render', '-q', '-f', town, '--theme', theme, '--zoom', String(zoom), '--center',
+                center.map(value => value.toFixed(12)).join(','), '--size', `${WIDE.width}x${WIDE.height}`, '-o', file,
+                ...more]);
+            return readFileSync(file);
+        }).reverse();
+        await page.evaluate(() => {
+            document.activeElement.blur(); // the map shows that it has the focus
+            document.querySelectorAll('.card').forEach(card => card.style.visibility = 'hidden');
+        });
+        const shown = await shoot(page, `labels-${name}`), names = await comparePictures(blank, ...drawn);
+        await page.evaluate(() => document.querySelectorAll('.card').forEach(card => card.style.visibility = ''));
+        const found = await comparePictures(blank, shown, drawn[1]);
+        check(found.same && found.wide === 0 && found.off <= OFF_EDGES && names.off > 5000,
+            `${name}: the map and its names are those of camber render`, {zoom, center, names: names.off, ...found});
+    };
+    await compare('opened', 'light');
+    await drag(page, -310, 170);
+    await compare('moved', 'light');
+    for (const [name, wheel, zoom] of [['nearer', -100, TOWN_ZOOM + 1], ['farther', 100, TOWN_ZOOM], ['far', 100, TOWN_ZOOM - 1]]) {
+        await page.mouse.move(WIDE.width / 2 + 130, WIDE.height / 2 - 70);
+        await page.mouse.wheel(0, wheel);
+        await reaches(page, zoom);
+        await compare(name, 'light');
+    }
+    await page.click('#theme');
+    await waitForTheme(page, true);
+    await compare('dark', 'dark');
+    await drag(page, 205, -90);
+    await compare('dark-moved', 'dark');
+    await page.context().close();
+    await server.stop();
 }
 
 async function checkHash(page, url) {
@@ -332,6 +387,42 @@ async function checkDarkMap(browser) {
     }
 }
 
+// A map whose light and dark theme are two archives, found in the list of maps. The other map has the same input.
+async function checkMaps(browser) {
+    const [light, dark] = ['light', 'dark'].map(theme => {
+        const archive = join(folder, `pair-${theme}.pmtiles`);
+        execFileSync(tool, ['tiles', '-q', '-f', input, ...DRAWN, '-o', archive, '--theme', theme, '--min-zoom', '12',
+            '--max-zoom', String(ZOOM + 1)]);
+        return archive;
+    });
+    const server = await startServer(`drawn=${input}`, `pair=${light}`, `pair/dark=${dark}`);
+    const context = await browser.newContext({viewport: WIDE, colorScheme: 'light', reducedMotion: 'reduce'});
+    const page = await context.newPage();
+    page.on('console', message => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+    await context.addInitScript(`window.coverWindow = ${coverWindow}`);
+    await page.goto(server.url);
+    check((await page.locator('li a').allTextContents()).length === 2, 'the maps are listed', await page.content());
+    await shoot(page, 'maps');
+    await page.locator('li a[href="pair/"]').click();
+    await page.waitForURL(/\/pair\//);
+    await page.goto(server.url + 'pair/' + hashAt(CENTER));
+    await waitForTheme(page, false);
+    const ground = () => page.evaluate(() => getComputedStyle(document.getElementById('map')).backgroundColor);
+    check(await page.locator('#theme').isVisible(), 'two archives have a button');
+    await page.click('#theme');
+    await waitForTheme(page, true);
+    check(await ground() === 'rgb(16, 20, 28)', 'it shows the dark archive on a dark page', await ground());
+    await shoot(page, 'pair-dark');
+    await page.click('#theme');
+    await waitForTheme(page, false);
+    check(await ground() !== 'rgb(16, 20, 28)', 'and the light one on a light page', await ground());
+    await page.emulateMedia({colorScheme: 'dark'});
+    await waitForTheme(page, true);
+    check(true, "without a choice two archives follow the system's");
+    await context.close();
+    await server.stop();
+}
+
 // The browser reports that nothing answers; so this page's console is not silent.
 async function checkRestart(browser) {
     const server = await startServerAt(await findPort(), input, ...DRAWN);
@@ -451,7 +542,9 @@ try {
     await checkPhone(browser, server.url);
     await checkForeignText(browser);
     await checkLicence(browser);
+    await checkLabels(browser, blank);
     await checkDarkMap(browser);
+    await checkMaps(browser);
     await checkRestart(browser);
     await checkArchive(browser, blank);
     if (help.includes('--edit'))

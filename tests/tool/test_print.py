@@ -157,7 +157,9 @@ if have("pdftocairo"):
 # ---- SVG ----
 
 svg = render("sheet.svg", *VIEW)
-expect('width="' in open(svg, encoding="utf-8").read(500), "an SVG has a size")
+told = re.search(r'<svg [^>]*?width="([0-9.]+)pt" height="([0-9.]+)pt"', open(svg, encoding="utf-8").read(500))
+expect(told and abs(float(told[1]) - 105 / MM * 72) < 0.01 and abs(float(told[2]) - 148 / MM * 72) < 0.01,
+       "an SVG has a size, in points")
 if have("rsvg-convert"):
     drawn = os.path.join(FOLDER, "svg.png")
     subprocess.run(["rsvg-convert", "-d", str(DPI), "-p", str(DPI), "-o", drawn, svg], check=True)

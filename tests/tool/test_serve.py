@@ -11,6 +11,7 @@ server.
 import gzip
 import http.client
 import json
+import math
 import os
 import random
 import re
@@ -26,6 +27,7 @@ import sys
 import tempfile
 import threading
 import time
+import urllib.parse
 
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
@@ -74,7 +76,8 @@ def test_routes():
     expect("default-src 'none'" in headers["content-security-policy"], headers)
     expect(server.get("/page/page.css")[1]["content-type"].startswith("text/css"), "page.css")
     expect(server.get("/health")[::2] == (200, b"ok\n"), "health")
-    for path in ("/static/0,0,0/601x1.png", "/static/0,0,0/301x1@2x.png", "/static/0,0,0/1x1@5x.webp"):
+    for path in ("/static/0,0,0/601x1.png", "/static/0,0,0/301x1@2x.png", "/static/0,0,0/1x1@5x.webp",
+                 "/static/0,0,0/99999999x1.png", "/static/auto/601x1.png", "/static/0,0,1,1/601x1.png"):
         status, headers, body = server.get(path)
         expect(status == 400 and b"at most 600 px (--max-size), and R 4 (--max-ratio)" in body, f"{path}: {status}: {body}")
         expect(server.get(path, port=server.metrics_port)[0] == 404, "pictures at the metrics' address")
@@ -96,6 +99,258 @@ def test_routes():
     expect(server.get("/dark" + tile + ".png")[0] == 404 and server.get("/dark/tiles.json")[0] == 404, "another theme")
     expect(server.get(tile + ".png")[2] in pictures, "the dark theme differs by how it is asked for")
     server.stop()
+
+
+# ---- Overlays of pictures ----
+
+
+def overlay(*parameters):
+    return "?" + urllib.parse.urlencode(parameters)
+
+
+def is_color(picture, x, y, wanted, ratio=1):
+    """Whether a pixel has this colour, within a level."""
+    row = picture[round(y * ratio)]
+    return all(abs(a - b) <= 1 for a, b in zip(row[4 * round(x * ratio):][:3], wanted))
+
+
+def post(server, path, body, **headers):
+    made = http.client.HTTPConnection(server.host, server.port, timeout=PATIENCE_S)
+    made.request("POST", path, body, headers)
+    answer = made.getresponse()
+    body = answer.read()
+    made.close()
+    return answer.status, body
+
+
+RED, BLUE, GREEN, WHITE = (255, 0, 0), (0, 0, 255), (0, 128, 0), (255, 255, 255)
+BOX = "0,40|1,40|1,41|0,41|0,40"
+
+
+def test_overlays():
+    """Paths, markers and texts are where and as the query says, and the same as GeoJSON."""
+    write_map("map.json")
+    server = Server("map.json")
+    view = "/static/0.5,40.5,8/400x400.png"  # a degree is 364 px wide
+    plain = decode(server.get(view)[2])
+
+    def ask(*parameters, path=view):
+        status, _, body = server.get(path + overlay(*parameters))
+        expect(status == 200, f"{parameters}: {status} {body}")
+        return decode(body)
+
+    box = ask(("path", BOX), ("fill", "red"), ("stroke", "blue"), ("width", "10"))
+    expect(is_color(box, 200, 200, RED) and is_color(box, 18, 200, BLUE) and is_color(box, 382, 200, BLUE), "a filled path")
+    expect(box[200][:40] == plain[200][:40] and is_color(box, 24, 200, RED), "its width")
+    # The path itself is asked first.
+    own = ask(("path", f"fill:green|stroke:none|{BOX}"), ("fill", "red"), ("stroke", "blue"), ("width", "10"))
+    expect(is_color(own, 200, 200, GREEN) and is_color(own, 20, 200, GREEN) and own[200][:4 * 17] == plain[200][:4 * 17], "own look")
+    expect(ask(("path", "|".join(",".join(reversed(p.split(","))) for p in BOX.split("|"))), ("latlng", "1"), ("fill", "red"),
+               ("stroke", "blue"), ("width", "10")) == box, "latlng")
+    line = ask(("path", "0.3,40.5|0.7,40.5"), ("stroke", "red"), ("width", "20"), ("border", "blue"), ("borderwidth", "5"))
+    expect(is_color(line, 200, 200, RED) and is_color(line, 200, 208, RED) and is_color(line, 200, 213, BLUE), "a border")
+    expect(line[217][800:804] == plain[217][800:804] and line[200][4 * 125:4 * 126] == plain[200][4 * 125:4 * 126], "butt")
+    for cap in ("round", "square"):
+        longer = ask(("path", "0.3,40.5|0.7,40.5"), ("stroke", "red"), ("width", "20"), ("linecap", cap))
+        expect(is_color(longer, 122, 200, RED), cap)
+    joins = [ask(("path", "0.3,40.4|0.5,40.6|0.7,40.4"), ("width", "20"), ("linejoin", join)) for join in ("miter", "bevel", "round")]
+    expect(joins[0] != joins[1] != joins[2] != joins[0], "joins")
+    # The example of Google's documents.
+    encoded, decoded = "_p~iF~ps|U_ulLnnqC_mqNvxq`@", "-120.2,38.5|-120.95,40.7|-126.453,43.252"
+    pictures = [server.get("/static/auto/200x200.png" + overlay(("path", path), ("width", "3")))[2]
+                for path in ("enc:" + encoded, decoded, "width:3|enc:" + encoded)]
+    expect(pictures[0] == pictures[1] == pictures[2], "an encoded polyline")
+
+    pin = ask(("marker", "0.5,40.5|pin|color:blue"))
+    expect(is_color(pin, 200, 192, BLUE) and is_color(pin, 200, 179, WHITE) and pin[203] == plain[203], "a pin stands on its point")
+    moved = ask(("marker", "0.5,40.5|pin|scale:2|offset:20,-10|color:blue"))
+    expect(is_color(moved, 240, 164, BLUE) and moved[195] == plain[195], "an offset is scaled")
+    dot = ask(("marker", "0.5,40.5|dot|color:red"))
+    expect(is_color(dot, 200, 200, RED) and is_color(dot, 203, 200, RED) and dot[208] == plain[208], "a dot is centred")
+    turned = ask(("marker", "0.5,40.5|pin|color:blue"), path="/static/0.5,40.5,8@90/400x400.png")
+    expect(is_color(turned, 200, 192, BLUE) and is_color(turned, 200, 179, WHITE), "a pin stands upright where the map turns")
+    words = ask(("text", "0.5,40.5|Wide words|size:40|color:red|halo:none"))
+    inked = [y for y in range(400) if words[y] != plain[y]]
+    expect(inked and 20 <= max(inked) - min(inked) <= 50 and abs(sum(inked) / len(inked) - 200) < 12, f"a text: {inked}")
+    expect(ask(("text", "0.5,40.5|{name} %d|size:40")) != plain and ask(("marker", "0.5,40.5|pin|label:7")) != pin, "texts")
+    twice = decode(server.get("/static/0.5,40.5,8/400x400@2x.png" + overlay(("path", BOX), ("fill", "red")))[2])
+    expect(len(twice) == 800 and is_color(twice, 200, 200, RED, 2), "@2x")
+    expect(ask(("path", BOX), ("unknown", "x"), ("v", "3")) == ask(("path", BOX)), "other parameters are ignored")
+
+    # Fitted: the box takes all but a tenth of a tenth on each side, and none of it without padding.
+    for name, parameters, edge in (("auto", (("path", BOX),), 2), ("auto", (("path", BOX), ("padding", "0")), 0)):
+        fitted = ask(*parameters, ("fill", "red"), ("stroke", "none"), path=f"/static/{name}/300x600.png")
+        inside = [x for x in range(300) if is_color(fitted, x, 300, RED)]
+        expect(abs(len(inside) - 300 / (1 + 0.2 * (edge > 0))) <= 2, f"{name} {parameters}: {len(inside)} px")
+    bounds = server.get("/static/0,40,1,41/300x600.png" + overlay(("path", BOX), ("padding", "0"), ("fill", "red"), ("stroke", "none")))
+    expect(is_color(decode(bounds[2]), 0, 300, RED) and is_color(decode(bounds[2]), 299, 300, RED), "bounds")
+    near, far = (server.get("/static/auto/100x100.png" + overlay(("marker", "9.14,50.1"), *more))[2]
+                 for more in ((), (("maxzoom", "3"),)))
+    expect(near != far, "maxzoom")
+    across = server.get("/static/179,-1,-179,1/300x300.png" + overlay(("path", "179,0|181,0"), ("stroke", "red"), ("width", "9")))
+    expect(is_color(decode(across[2]), 150, 150, RED), "bounds across the antimeridian")
+
+    polygon = {"type": "Polygon", "coordinates": [[[float(n) for n in p.split(",")] for p in BOX.split("|")]]}
+    look = {"fill": "red", "fill-opacity": 1, "stroke": "blue", "stroke-width": 10}
+    point = {"type": "Feature", "properties": {"marker-color": "blue"}, "geometry": {"type": "Point", "coordinates": [0.5, 40.5]}}
+    status, body = post(server, view, json.dumps({"type": "Feature", "properties": look, "geometry": polygon}))
+    expect(status == 200 and decode(body) == box, f"GeoJSON differs from its path: {status}")
+    status, body = post(server, view, json.dumps({"type": "FeatureCollection", "features": [point]}), Transfer_Encoding="")
+    expect(status == 200 and decode(body) == pin, "a point is no marker")
+    status, body = post(server, "/static/auto/300x300.png?padding=0&fill=red&stroke=none", json.dumps(polygon))
+    expect(status == 200 and is_color(decode(body), 150, 150, RED), "a geometry alone, with the query's look")
+    expect(server.get(view)[2] == server.get(view + "?")[2] and decode(server.get(view)[2]) == plain, "it has changed the map")
+    expect(post(server, f"/{ZOOM}/{COLUMN}/{ROW}.png", "{}")[0] == 405 and post(server, "/", "{}")[0] == 405, "POST elsewhere")
+    server.stop()
+
+
+def test_overlay_errors():
+    """Answers say what is wrong with a picture, with its number, and do not repeat the request's own text."""
+    write_map("map.json")
+    server = Server("map.json", "--max-size", "600")
+    auto = "/static/auto/300x200.png"
+    for name, value, words in (
+            ("path", "1,2", "two or more points"), ("path", "", "point 1"), ("path", "a|b", "point 1"), ("path", "1,2|3", "point 2"),
+            ("path", "nan,1|2,3", "point 1"), ("path", "1,inf|2,3", "point 1"), ("path", "1e999,1|2,3", "point 1"),
+            ("path", "0x1,1|2,3", "point 1"), ("path", "1,91|2,3", "point 1"), ("path", "541,1|2,3", "point 1"),
+            ("path", "width:-1|1,2|3,4", "width"), ("path", "width:501|1,2|3,4", "width"), ("path", "stroke:<b>|1,2|3,4", "stroke"),
+            ("path", "fill:|1,2|3,4", "fill"), ("path", "color:red|1,2|3,4", "its options"), ("path", "enc:~~~~~~~~~~", "encoded"),
+            ("path", "enc:_p~iF", "half a point"), ("path", "enc:\x01", "encoded"), ("path", "1,2|3,4" + "|5,6" * 900, None),
+            ("marker", "1", "LON,LAT"), ("marker", "1,2|x.png", "pin and dot"), ("marker", "1,2|pin|scale:0", "scale"),
+            ("marker", "1,2|pin|offset:1", "offset"), ("marker", "1,2|pin|dot", "pin and dot"), ("marker", "1,2|pin|x:1", "options"),
+            ("text", "1,2", "no words"), ("text", "1,2|", "no words"), ("text", "1,2|x|size:1e9", "size"), ("text", "1,2|x|y", "NAME:VALUE"),
+            ("text", "1,2|x|anchor:up", "anchor"), ("text", "1,2|" + "x" * 501, "500 bytes"), ("linecap", "flat", "linecap"),
+            ("linejoin", "x", "linejoin"), ("padding", "-1", "padding"), ("maxzoom", "25", "maxzoom"), ("stroke", "nocolour", "stroke")):
+        status, headers, body = server.get(auto + overlay((name, value)))
+        expect(status == (400 if words else 200), f"{name}={value[:60]}: {status} {body[:200]}")
+        expect(not words or (body.startswith(b"400 ") and words.encode() in body and headers["cache-control"] == "no-store"),
+               f"{name}={value[:60]}: {body[:200]}")
+        expect(b"<b>" not in body and b"nocolour" not in body, "a request's text is repeated")
+    expect(b"nothing to fit" in server.get(auto)[2] and b"path 2: " in server.get(auto + overlay(("path", BOX), ("path", "x")))[2], "what")
+    many = overlay(*[("path", "1,2|3,4")] * 101)
+    expect(b"at most 100 paths" in server.get(auto + many)[2], "many paths")
+    for path, words in (("/static/1,2/3x4.png", "the view"), ("/static/1,2,3@x/3x4.png", "the view"), ("/static/1,2,25/3x4.png", "the view"),
+                        ("/static/1,4,3,2/3x4.png", "the bounds"), ("/static/1,2,3,99/3x4.png", "the bounds"),
+                        ("/static/1,2,3/0x4.png", "the size"), ("/static/1,2,3/3.png", "the size"), ("/static/1,2,3/3x4.gif", "ends in"),
+                        ("/static/1,2,3/3x4", "ends in"), ("/static/", "the view"), ("/static/auto/3x4.pbf", "ends in"),
+                        ("/static/auto/601x1.png", "at most 600 px")):
+        status, _, body = server.get(path)
+        expect(status == 400 and words.encode() in body, f"{path}: {status} {body}")
+    deep, large = 100000, 1 << 20
+    for body, words in ((b"", b"POST needs"), (b"{", b"not JSON"), (b"[]", b"not an object"), (b'"file:///etc/passwd"', b"not JSON"),
+                        (b'"/etc/passwd"', b"not JSON"), (b"[" * deep, b"not JSON"), (b'{"a":' * 2000 + b"1" + b"}" * 2000, b"no geometry"),
+                        (b'{"type": "FeatureCollection"}', b"features"), (b'{"type": "Point", "coordinates": [1]}', b"two numbers"),
+                        (b'{"type": "Point", "coordinates": [1e400, 1]}', b"not JSON"), (b'{"type": "Point", "coordinates": [1, 99]}', b"not on"),
+                        (b'{"type": "LineString", "coordinates": ' + b"[" * 20 + b"1, 2" + b"]" * 20 + b"}", b"coordinates"),
+                        (b'{"type": "GeometryCollection", "geometries": [' * 20 + b"]}" * 20, b"nested"), (b"\xff\xfe", b"not JSON"),
+                        (b'{"type": "Topology"}', b"no geometry"), (b" " * (large + 1), b"more than"),
+                        (b'{"type": "Feature", "properties": {"fill": "nocolour"}, "geometry": null}', b"feature 1: fill"),
+                        (b'{"type": "Feature", "properties": {"stroke": {"a": 1}}, "geometry": null}', b"feature 1: stroke")):
+        status, answer = post(server, auto, body)
+        expect(status == 400 and (words in answer or b"not an object" in answer), f"{body[:60]}: {status} {answer}")
+        expect(b"passwd" not in answer and b"nocolour" not in answer, answer)
+    # Properties that are not what they should be are not errors, and no file is read for them.
+    odd = {"type": "Feature", "properties": {"stroke-width": "x", "fill-opacity": [1], "text": 5, "icon-image": "file:///etc/passwd"},
+           "geometry": {"type": "LineString", "coordinates": [[1, 2], [3, 4], [3, 4]]}}
+    expect(post(server, auto, json.dumps(odd))[0] == 200, "odd properties")
+    for data in (b"GET " + auto.encode() + b"?path=%zz%&&=&%00&marker=%ff HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n",
+                 b"GET " + auto.encode() + b"?path=" + b"1,2%7C" * (1 << 18) + b" HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n",
+                 b"POST " + auto.encode() + b" HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\nConnection: close\r\n\r\nzz\r\n"):
+        expect(status_of(server.send(data, seconds=3)) in (400, 413, 414, 431, None), data[:60])
+    source = random.Random(11)
+    parts = ["path=", "marker=", "text=", "1,2", "|", "%7C", "enc:", "_p~iF", ":", "width:", "stroke:", "red", "&", "=", "1e308", "-", "nan",
+             "%00", "%", "latlng=1&", "%F0%9F%98%80", "auto", "padding=9&", "scale:", "label:", "x" * 90, "#", "+", "\\", "'"]
+    for _ in range(400):
+        path = auto + "?" + "".join(source.choice(parts) for _ in range(source.randint(1, 14)))
+        expect(status_of(server.send(b"GET " + path.encode() + b" HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")) in (200, 400), path)
+    # Bodies of strangers have little memory at once.
+    begun = [server.open() for _ in range(20)]
+    for made in begun:
+        made.sendall(b"POST " + auto.encode() + b" HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\n" + b" " * 50000)
+    wait_until(lambda: post(server, auto, json.dumps(odd))[0] == 503, "any number of bodies is taken")
+    for made in begun:
+        made.close()
+    wait_until(lambda: post(server, auto, json.dumps(odd))[0] == 200, "bodies of clients that have left are kept")
+    wait_until(lambda: server.metric("requests_in_flight") == 1, "requests are lost")
+    expect(server.get("/health")[0] == 200, "it does not serve any more")
+    server.stop()
+    expect(not any("ERROR" in line or "runtime error" in line for line in server.errors), server.errors)
+    write_archive("light.pmtiles", "light", 3)
+    server = Server("light.pmtiles")
+    expect(server.get(auto + overlay(("path", BOX)))[0] == 404 and post(server, auto, "{}")[0] == 404, "pictures of an archive")
+    server.stop()
+
+
+def write_archive(name, theme, seed):
+    """A PMTiles of pictures in one theme."""
+    write_map("archived.json", seed=seed)
+    subprocess.run([TOOL, "tiles", "archived.json", "-o", name, "-f", "-q", "--theme", theme, "--min-zoom", str(ZOOM - 2), "--max-zoom",
+                    str(ZOOM), "--tile-size", "256"], check=True, timeout=PATIENCE_S)
+
+
+def test_maps():
+    """Several maps under names, among them light and dark out of two archives; each is read again by itself."""
+    write_map("a.json", seed=1)
+    write_map("b.json", seed=2)
+    write_archive("light.pmtiles", "light", 3)
+    write_archive("dark.pmtiles", "dark", 3)
+    tile = f"{ZOOM}/{COLUMN}/{ROW}.png"
+    alone = {}
+    for name in ("a.json", "b.json", "light.pmtiles", "dark.pmtiles"):
+        server = Server(name)
+        alone[name] = server.get("/" + tile)[2]
+        server.stop()
+    server = Server("a=a.json", "x-1=light.pmtiles", "x-1/dark=dark.pmtiles", "b=b.json")
+    for name, file in (("a", "a.json"), ("b", "b.json"), ("x-1", "light.pmtiles"), ("x-1/dark", "dark.pmtiles")):
+        expect(server.get(f"/{name}/{tile}")[2] == alone[file], f"{name} is not as when it is alone")
+        about = json.loads(server.get(f"/{name}/tiles.json")[2])
+        expect(about["tiles"] == [f"{server.url}/{name}/{{z}}/{{x}}/{{y}}.png"], about)
+        theme = "dark" if name == "x-1/dark" else "light"
+        expect(about["camber"]["theme"] == theme, about)
+        page = server.get(f"/{name}/")
+        expect(page[0] == 200 and b'src="page/page.js"' in page[2], page[2])
+        expect(server.get(f"/{name}/page/page.js")[0] == 200 and server.get(f"/{name}/health")[0] == 200, name)
+        status, headers, _ = server.get(f"/{name}")
+        expect(status == 308 and headers["location"] == name.split("/")[-1] + "/", headers)
+    expect(server.get(f"/a/dark/{tile}")[0] == 200 and server.get(f"/x-1/dark/dark/{tile}")[0] == 404, "dark")
+    status, headers, body = server.get("/")
+    listed = re.findall(r'<li><a href="([^"]*)/">', body.decode())
+    expect(status == 200 and listed == ["a", "x-1", "b"] and "default-src 'none'" in headers["content-security-policy"], body)
+    expect(server.get("/page/page.css")[0] == 200 and server.get("/health")[0] == 200, "the list's own files")
+    for path in ("/" + tile, "/tiles.json", "/none/" + tile, "/aa/" + tile, "/a" + tile, "/metrics", "/a/metrics", "//a/" + tile):
+        expect(server.get(path)[0] == 404, path)
+
+    # Two are replaced: one by something else, and one by a broken file, which is named; the other maps stay as they were.
+    hits = server.metric("cache_tiles")
+    write_map("a.json", seed=9)
+    with open("light.pmtiles", "r+b") as file:
+        file.truncate(100)
+    server.process.send_signal(signal.SIGHUP)
+    wait_until(lambda: any("reloaded b=b.json" in line for line in server.errors), lambda: server.errors)
+    said = "".join(server.errors)
+    expect("reloaded a=a.json" in said and "still serving the previous map of x-1\n" in said and "light.pmtiles" in said, said)
+    expect(server.metric("cache_tiles") < hits, "tiles of the former map are kept")
+    expect(server.get("/a/" + tile)[2] not in alone.values(), "the former map")
+    expect(server.get("/b/" + tile)[2] == alone["b.json"] and server.get("/x-1/" + tile)[2] == alone["light.pmtiles"], "others")
+    server.stop()
+
+    # Light and dark of one map without a name.
+    write_archive("light.pmtiles", "light", 3)
+    server = Server("light.pmtiles", "dark=dark.pmtiles")
+    expect(server.get("/" + tile)[2] == alone["light.pmtiles"] and server.get("/dark/" + tile)[2] == alone["dark.pmtiles"], "themes")
+    themes = [json.loads(server.get(path + "tiles.json")[2])["camber"]["theme"] for path in ("/", "/dark/")]
+    expect(themes == ["light", "dark"] and server.get("/dark/")[0] == 200 and server.get("/")[0] == 200, themes)
+    server.stop()
+
+    for arguments, words in ((("a=a.json", "b.json"), "no name"), (("dark=a.json",), "no map"), (("a/dark=a.json",), "a=INPUT"),
+                             (("page=a.json",), "path of this name"), (("a=",), "no input"), (("a=-",), "standard input"),
+                             (("a=a.json", "--renderd", "x", "--cache-dir", "y"), "one map"),
+                             (("a=a.json", "--edit", "x"), "one map"), (("a=a.json", "--name", "x"), "own name")):
+        done = subprocess.run([TOOL, "serve", *arguments], capture_output=True, text=True, timeout=PATIENCE_S)
+        expect(done.returncode == 2 and words in done.stderr, f"{arguments}: {done.returncode} {done.stderr}")
+    done = subprocess.run([TOOL, "serve", "a=a.json", "b=none.json", "--listen", "127.0.0.1:0"], capture_output=True, text=True,
+                          timeout=PATIENCE_S)
+    expect(done.returncode == 66 and "none.json" in done.stderr and "http://" not in done.stderr, done.stderr)
 
 
 def test_start():
@@ -702,6 +957,63 @@ def test_tiles():
                 expect(got == wanted or (zoom > 0 and difference(decode(got), decode(wanted)) <= 1),
                        f"{zoom}/{x}/{y}: differs by {difference(decode(got), decode(wanted))}")
     expect(compared == 135 and same > 40, f"{same} of {compared} are the same")
+    server.stop()
+
+
+def make_archive(*options):
+    """What camber tiles draws of map.json: tiles by zoom, column and row."""
+    done = subprocess.run([TOOL, "tiles", "map.json", "-o", "there.mbtiles", "-q", "-f", *options], capture_output=True,
+                          text=True, timeout=PATIENCE_S, check=False)
+    expect(done.returncode == 0, done.stderr)
+    with sqlite3.connect("there.mbtiles") as base:
+        rows = base.execute("select zoom_level, tile_column, tile_row, tile_data from tiles").fetchall()
+    return {(z, x, 2 ** z - 1 - y): data for z, x, y, data in rows}
+
+
+def count_off(one, other):
+    """How many pixels differ by more than one level."""
+    return sum(sum(max(abs(p - q) for p, q in zip(a[i:i + 4], b[i:i + 4])) > 1 for i in range(0, len(a), 4))
+               for a, b in zip(one, other) if a != b)
+
+
+def test_labels():
+    """They are where camber tiles draws them, in every order of requests; a picture of a view has those of the view."""
+    write_map("map.json", count=600)
+    with open("map.json", encoding="utf-8") as file:
+        roads = json.load(file)
+    for i, road in enumerate(roads["features"]):
+        road["properties"]["name"] = f"Road {i % 40}"
+    with open("map.json", "w", encoding="utf-8") as file:
+        json.dump(roads, file)
+    zooms = ("--min-zoom", "12", "--max-zoom", "14")
+    wanted, plain = make_archive(*zooms), make_archive(*zooms, "--no-labels")
+    labelled = [key for key in wanted if wanted[key] != plain.get(key)]
+    expect(len(labelled) > 40, f"{len(labelled)} tiles have labels")
+    random.Random(3).shuffle(labelled)
+    server = Server("map.json")
+    for zoom, x, y in labelled[:50]:
+        got = decode(server.get(f"/{zoom}/{x}/{y}.png")[2])
+        worst = difference(got, decode(wanted[zoom, x, y]))
+        expect(worst <= 1, f"{zoom}/{x}/{y} differs by {worst}")
+    dense = make_archive(*zooms, "--ratio", "2")
+    for zoom, x, y in labelled[:12]:
+        worst = difference(decode(server.get(f"/{zoom}/{x}/{y}@2x.png")[2]), decode(dense[zoom, x, y]))
+        expect(worst <= 1, f"{zoom}/{x}/{y}@2x differs by {worst}")
+    there = (COLUMN / 2 ** ZOOM * 360 - 180, math.degrees(math.atan(math.sinh(math.pi * (1 - 2 * ROW / 2 ** ZOOM)))))
+    for zoom, bearing, pitch in ((13, 0, 0), (13.4, 0, 0), (13, 40, 0), (13.5, -30, 50)):
+        drawn = []
+        for options in ([], ["--no-labels"]):
+            done = subprocess.run([TOOL, "render", "map.json", "-o", "view.png", "-q", "-f", "--size", "500x400",
+                                   f"--center={there[0]:.9f},{there[1]:.9f}", "--zoom", str(zoom), f"--bearing={bearing}",
+                                   "--pitch", str(pitch), *options], capture_output=True, text=True,
+                                  timeout=PATIENCE_S, check=False)
+            expect(done.returncode == 0, done.stderr)
+            with open("view.png", "rb") as file:
+                drawn.append(decode(file.read()))
+        path = f"/static/{there[0]:.9f},{there[1]:.9f},{zoom}@{bearing},{pitch}/500x400.png"
+        got = decode(server.get(path)[2])
+        expect(count_off(*drawn) > 100, f"{path}: a view with few labels: {count_off(*drawn)}")
+        expect(difference(got, drawn[0]) <= 1, f"{path} differs by {difference(got, drawn[0])}")
     server.stop()
 
 

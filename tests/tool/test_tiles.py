@@ -266,7 +266,7 @@ def test_same_bytes():
     tiles(*common, "-o", "one.pmtiles")
     whole = read("one.pmtiles")
     camber("tiles", "verify", "one.pmtiles")
-    for option, value in (("--threads", 1), ("--threads", 2), ("--threads", 8), ("--memory", "48M"),
+    for option, value in (("--threads", 1), ("--threads", 2), ("--threads", 5), ("--memory", "48M"),
                           ("--memory", "1G")):
         tiles(*common, "-o", "other.pmtiles", "-f", "--name", "one", option, value)
         expect(read("other.pmtiles") == whole, f"{option} {value}: other bytes")
@@ -487,6 +487,7 @@ def test_renew():
         file.writelines(f"{zoom}/{column}/{row}\n" for zoom, column, row in listed)
     said = camber("tiles", *options, "-o", "map.mbtiles", "--renew", "list").stderr
     expect(re.search(r"^1 tile removed", said, re.M) and "1 tile of the list is outside" in said, said)
+    expect(re.search(r"^map.mbtiles: \d+ tiles? drawn, now \d+ tiles, zooms \d+ to \d+, [\d.]+ KB, [\d.]+ s$", said, re.M), said)
     made = archive("map.mbtiles")
     wanted = {**old, **{key: new.get(key) for key in listed}}
     expect(made == {key: data for key, data in wanted.items() if data}, "renewed tiles, and no others, are new")
@@ -566,6 +567,31 @@ def test_labels():
     tiles("lines.geojson", "--style", style, *RANGE, "-o", "lines.mbtiles", "--no-labels")
     expect(archive("lines.mbtiles").keys() <= there.keys(), "a tile with lines is missing")
     camber("tiles", "verify", "one.pmtiles")
+
+
+def test_label_sizes():
+    """Tiles of 512 px and of twice the density have the same labels at the same places."""
+    make_lines("lines.geojson")
+    common = ("lines.geojson", "--style", write_style("labelled", STYLES["labelled"]))
+    tiles(*common, *RANGE, "-o", "one.mbtiles", "--label-record", "one")
+    tiles(*common, *RANGE, "-o", "two.mbtiles", "--ratio", 2, "--label-record", "two")
+    expect(len(read("one")) > 2000 and read("one") == read("two"), "@2x has other labels")
+    tiles(*common, *RANGE, "-o", "three.mbtiles", "--ratio", 2, "--label-record", "three", "--threads", 5)
+    expect(read("two.mbtiles") == read("three.mbtiles") or archive("two.mbtiles") == archive("three.mbtiles"),
+           "other threads: other bytes @2x")
+    tiles(*common, "--tile-size", 512, "--min-zoom", 8, "--max-zoom", 12, "-o", "large.mbtiles")
+    small, large, compared = archive("one.mbtiles"), archive("large.mbtiles"), 0
+    expect({(z - 1, x // 2, y // 2) for z, x, y in small} == large.keys(), "other tiles of 512 px")
+    for (zoom, column, row), data in large.items():
+        rows = decode(data)
+        for x, y in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            part = small.get((zoom + 1, 2 * column + x, 2 * row + y))
+            if part:
+                cut = [line[1024 * x:1024 * x + 1024] for line in rows[256 * y:256 * y + 256]]
+                worst = difference(decode(part), cut)
+                compared += 1
+                expect(worst <= 1, f"{zoom}/{column}/{row} of 512 px differs by {worst}")
+    expect(compared > 100, f"{compared} tiles compared")
 
 
 def test_renew_labels():
@@ -681,7 +707,8 @@ def test_dry_run():
         expect(0.8 < told["bytes"] / made["bytes"] < 1.25, f"{options}: {told} {made}")
         expect(made["tiles"] <= told["tiles"] < 1.5 * made["tiles"], f"{options}: {told} {made}")
     said = camber("tiles", "town.geojson", "-o", "dry.mbtiles", "--max-zoom", 9, "--dry-run").stderr
-    expect(re.search(r"would have \d+ tiles in \d+ metatiles, \d+ points, about \d+\.\d MB$", said, re.M), said)
+    expect(re.search(r"^dry.mbtiles: would have at most \d+ tiles in \d+ metatiles?, [\d,]+ points, about \d+ KB; "
+                     r"dry run, [\d.]+ s$", said, re.M), said)
 
 
 def test_metadata():
@@ -848,8 +875,9 @@ def test_usage():
 def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # under nohup or a shell's & it is ignored, and by children
     tests = [test_usage, test_cuts, test_paved, test_sizes, test_same_bytes, test_schedule, test_auto, test_killed,
-             test_stopped, test_other_run, test_renew, test_labels, test_renew_labels, test_merged_sizes, test_area, test_folders, test_dry_run,
-             test_metadata, test_schemas, test_full]
+             test_stopped, test_other_run, test_renew, test_labels, test_label_sizes,
+             test_renew_labels, test_merged_sizes, test_area, test_folders, test_dry_run, test_metadata,
+             test_schemas, test_full]
     named = [test for test in tests if test.__name__[5:] in sys.argv[2:]]
     for test in named or tests:
         with tempfile.TemporaryDirectory(prefix="camber-tiles-") as folder:

@@ -260,19 +260,24 @@ static void test_log_is_one_line(void **state) {
     host_done(&h, context);
 }
 
-static void take_progress(void *user, const char *stage, double fraction) {
-    assert_string_equal(stage, "reading");
-    *(double *)user = fraction;
+static void take_progress(void *user, const camber_progress_info *progress) {
+    assert_string_equal(progress->stage, "reading");
+    *(camber_progress_info *)user = *progress;
 }
 
 static void test_progress(void **state) {
     (void)state;
-    double seen = 7;
+    camber_progress_info seen = {.fraction = 7};
     const camber_context_desc desc = {.progress = take_progress, .progress_user = &seen};
     camber_context *context = NULL;
     assert_int_equal(camber_context_create(&desc, &context), CAMBER_OK);
     camber_progress(context, "reading", 0.25);
-    assert_true(seen == 0.25);
+    assert_true(seen.fraction == 0.25 && !seen.unit);
+    camber_progress_count(context, "reading", "tiles", 3, 4);
+    assert_true(seen.fraction == 0.75 && seen.done == 3 && seen.total == 4);
+    assert_string_equal(seen.unit, "tiles");
+    camber_progress_count(context, "reading", "features", 3, 0);
+    assert_true(seen.fraction < 0 && seen.done == 3 && seen.total == 0);
     camber_context_destroy(context);
 }
 

@@ -85,7 +85,7 @@ static int set_up(void **state) {
     stand *e = calloc(1, sizeof *e);
     pthread_mutex_init(&e->mutex, NULL);
     pthread_cond_init(&e->changed, NULL);
-    e->cache = camber_tile_cache_create(1 << 20, NULL);
+    e->cache = camber_tile_cache_create(1 << 20, 1, NULL);
     const camber_draw_queue_desc desc = {.cache = e->cache,
                                          .metrics = &e->metrics,
                                          .draw = paint,
@@ -178,7 +178,7 @@ static void cuts_a_neighbour_of_a_kept_picture(void **state) {
     wait_done(e, 2);
     assert_int_equal(e->drawn, 1);
     check_body(&other, one.ask.body->etag, false);
-    camber_tile_cache_clear(e->cache, 0); /* another input: the picture is of the one before */
+    camber_tile_cache_clear(e->cache, 0, 0); /* another input: the picture is of the one before */
     assert_true(ask(e, &far, 4, 6, 9));
     wait_done(e, 3);
     assert_int_equal(e->drawn, 2);
@@ -194,7 +194,7 @@ static void does_not_join_what_is_old(void **state) {
     hold(e, true);
     assert_true(ask(e, &old, 4, 6, 8));
     wait_drawing(e);
-    camber_tile_cache_clear(e->cache, 0);
+    camber_tile_cache_clear(e->cache, 0, 0);
     assert_true(ask(e, &fresh, 4, 6, 8));
     hold(e, false);
     wait_done(e, 2);

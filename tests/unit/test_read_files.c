@@ -625,11 +625,11 @@ static void test_cut_shapefile(void **state) {
     expect_failure(it, CAMBER_ERROR_INPUT, read_path(it, it->path));
 }
 
-static void take_progress(void *user, const char *stage, double fraction) {
+static void take_progress(void *user, const camber_progress_info *progress) {
     double *last = user;
-    assert_string_equal(stage, "reading");
-    assert_true(fraction <= 1);
-    *last = fraction;
+    assert_string_equal(progress->stage, "reading");
+    assert_true(progress->fraction <= 1);
+    *last = progress->fraction;
 }
 
 static void test_progress_and_formats(void **state) {

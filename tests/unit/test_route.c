@@ -74,7 +74,7 @@ static void reads_a_picture(void **state) {
     assert_int_equal(parse("/static/180,-85,24@360/2048x2048.webp", &request), 200);
     assert_true(request.bearing_deg == 360 && request.pitch_deg == 0);
     assert_int_equal(parse("/static/0,85.051129,2/9x9.png", &request), 200);
-    assert_int_equal(parse("/static/0,85.06,2/9x9.png", &request), 404); /* Web Mercator ends before */
+    assert_int_equal(parse("/static/0,85.06,2/9x9.png", &request), 400); /* Web Mercator ends before */
 }
 
 static void reads_a_name(void **state) {
@@ -157,8 +157,19 @@ static void knows_no_other_path(void **state) {
                                         "/light/0/0/0.png",
                                         "/tiles.json/",
                                         "/tiles.jsonp",
-                                        "/healthz",
-                                        "/static/0,0,0/0x1.png",
+                                        "/healthz"};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (parse(paths[i], &request) != 404 || request.route != CAMBER_ROUTE_NONE)
+            fail_msg("\"%s\" is a path", paths[i]);
+    }
+    assert_int_equal(parse("/static/0.123456789012345,0,0/1x1.png", &request), 200);
+}
+
+/* A path that begins as a picture is answered with what is wrong with it. */
+static void tells_what_is_wrong_with_pictures(void **state) {
+    static const char *const paths[] = {"/static/0,0,0/0x1.png",
                                         "/static/0,0,0/1x0.png",
                                         "/static/0,0,0/1x1.pbf",
                                         "/static/0,0,0/1X1.png",
@@ -180,14 +191,88 @@ static void knows_no_other_path(void **state) {
                                         "/static/0,0,0@0,-1/1x1.png",
                                         "/static/0,0,0@/1x1.png",
                                         "/static/0,0,0@0,/1x1.png",
-                                        "/static/0,0,0@0,0,0/1x1.png"};
+                                        "/static/0,0,0@0,0,0/1x1.png",
+                                        "/static/",
+                                        "/static/auto",
+                                        "/static/auto/",
+                                        "/static/auto@30/1x1.png",
+                                        "/static/autos/1x1.png",
+                                        "/static/1,2,3,4,5/1x1.png",
+                                        "/static/0,1,2,0/1x1.png",
+                                        "/static/0,0,1,86/1x1.png",
+                                        "/static/0,0,1,1@30/1x1.png",
+                                        "/static/0,0,0/1x1.jpg",
+                                        "/static/auto/2049x1.pbf"};
     camber_route_request request;
     (void)state;
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        if (parse(paths[i], &request) != 404 || request.route != CAMBER_ROUTE_NONE)
-            fail_msg("\"%s\" is a path", paths[i]);
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (parse(paths[i], &request) != 400 || request.route != CAMBER_ROUTE_STATIC || !request.reason)
+            fail_msg("\"%s\" is a picture", paths[i]);
+    assert_int_equal(parse("/static", &request), 404);
+}
+
+static void reads_bounds(void **state) {
+    camber_route_request request;
+    (void)state;
+    assert_int_equal(parse("/static/170,-1.5,-170,2/3x4@2x.png?padding=0", &request), 200);
+    assert_int_equal(request.view, CAMBER_ROUTE_BOUNDS);
+    assert_true(request.bounds[0] == 170 && request.bounds[1] == -1.5 && request.bounds[2] == -170 &&
+                request.bounds[3] == 2);
+    assert_int_equal(parse("/static/auto/3x4.webp", &request), 200);
+    assert_int_equal(request.view, CAMBER_ROUTE_AUTO);
+    assert_int_equal(parse("/static/0,0,0/3x4.webp", &request), 200);
+    assert_int_equal(request.view, CAMBER_ROUTE_CENTER);
+    assert_int_equal(camber_route_parse(&LIMITS, "POST", "/static/auto/3x4.webp", &request), 200);
+    assert_int_equal(camber_route_parse(&LIMITS, "POST", "/static/auto/0x4.webp", &request), 400);
+    assert_int_equal(camber_route_parse(&LIMITS, "PUT", "/static/auto/3x4.webp", &request), 405);
+}
+
+/* The longest name that begins the path names the map. */
+static void finds_maps(void **state) {
+    static const char *const names[] = {"a", "ab", "a/dark"}, *const rooted[] = {"", "dark"};
+    static const struct {
+        const char *path;
+        int status;
+        camber_route route;
+        uint32_t map, rooted_map;
+    } rows[] = {{"/", 200, CAMBER_ROUTE_INDEX, CAMBER_ROUTE_NO_MAP, 0},
+                {"/a/", 200, CAMBER_ROUTE_PAGE, 0, 9},
+                {"/a/0/0/0.png", 200, CAMBER_ROUTE_TILE, 0, 9},
+                {"/ab/0/0/0.png?x", 200, CAMBER_ROUTE_TILE, 1, 9},
+                {"/a/dark/0/0/0.png", 200, CAMBER_ROUTE_TILE, 2, 9},
+                {"/a/dark/dark/0/0/0.png", 200, CAMBER_ROUTE_TILE, 2, 9},
+                {"/ab/dark/0/0/0.png", 200, CAMBER_ROUTE_TILE, 1, 9},
+                {"/a", 200, CAMBER_ROUTE_FOLDER, 0, 9},
+                {"/a/dark?x", 200, CAMBER_ROUTE_FOLDER, 2, 9},
+                {"/a/health", 200, CAMBER_ROUTE_HEALTH, 0, 9},
+                {"/health", 200, CAMBER_ROUTE_HEALTH, CAMBER_ROUTE_NO_MAP, 0},
+                {"/page/page.css", 200, CAMBER_ROUTE_PAGE, CAMBER_ROUTE_NO_MAP, 0},
+                {"/a/page/page.css", 200, CAMBER_ROUTE_PAGE, 0, 9},
+                {"/a/static/auto/1x1.png", 200, CAMBER_ROUTE_STATIC, 0, 9},
+                {"/abc/0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"/a0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"/A/0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"//a/0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9}};
+    const camber_route_limits several = {4, 2048, names, 3}, two = {4, 2048, rooted, 2};
+    camber_route_request request;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(camber_route_parse(&several, "GET", rows[i].path, &request), rows[i].status);
+        assert_int_equal(request.route, rows[i].route);
+        if (rows[i].status == 200)
+            assert_int_equal(request.map, rows[i].map);
+        if (rows[i].rooted_map != 9) {
+            assert_int_equal(camber_route_parse(&two, "GET", rows[i].path, &request), 200);
+            assert_int_equal(request.map, rows[i].rooted_map);
+        }
     }
-    assert_int_equal(parse("/static/0.123456789012345,0,0/1x1.png", &request), 200);
+    assert_int_equal(camber_route_parse(&two, "GET", "/dark/0/0/0.png", &request), 200);
+    assert_true(request.map == 1 && !request.dark);
+    assert_int_equal(camber_route_parse(&two, "GET", "/0/0/0.png", &request), 200);
+    assert_int_equal(request.map, 0);
+    assert_int_equal(camber_route_parse(&several, "GET", "/a/dark", &request), 200);
+    assert_int_equal(request.name_length, 4);
+    assert_memory_equal(request.name, "dark", 4);
 }
 
 /* They are pictures, and it is the server's limits that they do not keep. */
@@ -200,7 +285,7 @@ static void tells_pictures_that_are_too_large(void **state) {
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         if (parse(paths[i], &request) != 400 || request.route != CAMBER_ROUTE_STATIC)
             fail_msg("\"%s\" is not too large", paths[i]);
-    assert_int_equal(parse("/static/0,0,0/2049x1.pbf", &request), 404);
+    assert_null(request.reason);
 }
 
 static void takes_two_methods(void **state) {
@@ -226,10 +311,17 @@ static void names_types(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_each_route),    cmocka_unit_test(reads_a_tile),
-        cmocka_unit_test(reads_a_picture),     cmocka_unit_test(reads_a_name),
-        cmocka_unit_test(knows_no_other_path), cmocka_unit_test(takes_two_methods),
-        cmocka_unit_test(names_types),         cmocka_unit_test(tells_pictures_that_are_too_large),
+        cmocka_unit_test(finds_each_route),
+        cmocka_unit_test(reads_a_tile),
+        cmocka_unit_test(reads_a_picture),
+        cmocka_unit_test(reads_a_name),
+        cmocka_unit_test(knows_no_other_path),
+        cmocka_unit_test(takes_two_methods),
+        cmocka_unit_test(names_types),
+        cmocka_unit_test(tells_pictures_that_are_too_large),
+        cmocka_unit_test(tells_what_is_wrong_with_pictures),
+        cmocka_unit_test(reads_bounds),
+        cmocka_unit_test(finds_maps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@
 enum { BODY_BYTES = 1000, THREADS = 4, ROUNDS = 20000, PLACES = 500 };
 
 static camber_tile_key key(uint64_t place) {
-    return (camber_tile_key){place, 1};
+    return (camber_tile_key){place, 1, 0};
 }
 
 static camber_body *make_body(unsigned char value) {
@@ -24,7 +24,7 @@ static camber_body *make_body(unsigned char value) {
 
 static void put(camber_tile_cache *cache, uint64_t place) {
     camber_body *body = make_body((unsigned char)place);
-    camber_tile_cache_put(cache, key(place), body, camber_tile_cache_get_generation(cache));
+    camber_tile_cache_put(cache, key(place), body, camber_tile_cache_get_generation(cache, 0));
     camber_body_release(body);
 }
 
@@ -38,7 +38,7 @@ static bool has(camber_tile_cache *cache, uint64_t place) {
 }
 
 static void forgets_what_was_used_longest_ago(void **state) {
-    camber_tile_cache *cache = camber_tile_cache_create(3 * (BODY_BYTES + 300), NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(3 * (BODY_BYTES + 300), 1, NULL);
     (void)state;
     put(cache, 1);
     put(cache, 2);
@@ -57,7 +57,7 @@ static void forgets_what_was_used_longest_ago(void **state) {
 
 static void keeps_its_bound(void **state) {
     const size_t most = 100 * (BODY_BYTES + 300);
-    camber_tile_cache *cache = camber_tile_cache_create(most, NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(most, 1, NULL);
     (void)state;
     for (uint64_t place = 0; place < 10000; place++) {
         put(cache, place);
@@ -67,7 +67,7 @@ static void keeps_its_bound(void **state) {
     assert_true(has(cache, 9999) && !has(cache, 0));
     void *bytes = calloc(1, most);
     camber_body *large = camber_body_create(bytes, most);
-    camber_tile_cache_put(cache, key(77), large, camber_tile_cache_get_generation(cache));
+    camber_tile_cache_put(cache, key(77), large, camber_tile_cache_get_generation(cache, 0));
     assert_null(camber_tile_cache_get(cache, key(77))); /* and nothing went for it */
     assert_true(has(cache, 9999));
     camber_body_release(large);
@@ -76,7 +76,7 @@ static void keeps_its_bound(void **state) {
 }
 
 static void grows(void **state) {
-    camber_tile_cache *cache = camber_tile_cache_create(64 << 20, NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(64 << 20, 1, NULL);
     (void)state;
     for (uint64_t place = 0; place < 5000; place++)
         put(cache, place);
@@ -89,24 +89,44 @@ static void grows(void **state) {
 
 /* A tile of one input is not kept among tiles of the next. */
 static void begins_anew(void **state) {
-    camber_tile_cache *cache = camber_tile_cache_create(1 << 20, NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(1 << 20, 1, NULL);
     camber_body *late = make_body(9);
     (void)state;
-    const uint64_t before = camber_tile_cache_get_generation(cache);
+    const uint64_t before = camber_tile_cache_get_generation(cache, 0);
     put(cache, 1);
-    camber_tile_cache_clear(cache, 0);
+    camber_tile_cache_clear(cache, 0, 0);
     assert_int_equal(camber_tile_cache_get_stats(cache).tiles, 0);
     assert_int_equal(camber_tile_cache_get_stats(cache).size_bytes, 0);
     camber_tile_cache_put(cache, key(9), late, before);
     assert_false(has(cache, 9) || has(cache, 1));
-    camber_tile_cache_put(cache, key(9), late, camber_tile_cache_get_generation(cache));
+    camber_tile_cache_put(cache, key(9), late, camber_tile_cache_get_generation(cache, 0));
     assert_true(has(cache, 9));
     camber_body_release(late);
     camber_tile_cache_destroy(cache);
 }
 
+/* Maps share the memory, and nothing else. */
+static void keeps_maps_apart(void **state) {
+    camber_tile_cache *cache = camber_tile_cache_create(1 << 20, 2, NULL);
+    camber_body *body = make_body(5);
+    camber_tile_key other = key(5);
+    (void)state;
+    other.map = 1;
+    put(cache, 5);
+    assert_null(camber_tile_cache_get(cache, other));
+    camber_tile_cache_put(cache, other, body, camber_tile_cache_get_generation(cache, 1));
+    camber_tile_cache_clear(cache, 0, 0);
+    assert_false(has(cache, 5));
+    camber_body *found = camber_tile_cache_get(cache, other);
+    assert_ptr_equal(found, body);
+    assert_int_equal(camber_tile_cache_get_stats(cache).tiles, 1);
+    camber_body_release(found);
+    camber_body_release(body);
+    camber_tile_cache_destroy(cache);
+}
+
 static void keeps_a_body_that_is_sent(void **state) {
-    camber_tile_cache *cache = camber_tile_cache_create(BODY_BYTES + 300, NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(BODY_BYTES + 300, 1, NULL);
     (void)state;
     put(cache, 1);
     camber_body *sent = camber_tile_cache_get(cache, key(1));
@@ -179,17 +199,17 @@ static void *use(void *user) {
             unsigned char bytes[BODY_BYTES];
             memset(bytes, (int)(unsigned char)place, sizeof bytes);
             body = camber_body_create(bytes, sizeof bytes);
-            camber_tile_cache_put(cache, key(place), body, camber_tile_cache_get_generation(cache));
+            camber_tile_cache_put(cache, key(place), body, camber_tile_cache_get_generation(cache, 0));
             camber_body_release(body);
         }
         if (i % 4096 == 0)
-            camber_tile_cache_clear(cache, 0);
+            camber_tile_cache_clear(cache, 0, 0);
     }
     return NULL;
 }
 
 static void serves_threads(void **state) {
-    camber_tile_cache *cache = camber_tile_cache_create(PLACES / 2 * BODY_BYTES, NULL);
+    camber_tile_cache *cache = camber_tile_cache_create(PLACES / 2 * BODY_BYTES, 1, NULL);
     pthread_t threads[THREADS];
     (void)state;
     for (int i = 0; i < THREADS; i++)
@@ -208,6 +228,7 @@ int main(void) {
         cmocka_unit_test(keeps_its_bound),
         cmocka_unit_test(grows),
         cmocka_unit_test(begins_anew),
+        cmocka_unit_test(keeps_maps_apart),
         cmocka_unit_test(keeps_a_body_that_is_sent),
         cmocka_unit_test(tags_differ_where_bytes_do),
         cmocka_unit_test(packs_and_unpacks),

@@ -1,8 +1,7 @@
 /* Labels of a whole zoom: pictures that are parts of a larger one have parts of the same labels, however the zoom is
  * divided, and none is cut, doubled or missing where two of them meet. */
+#include "label_seams.h"
 #include "town.h"
-
-#include "map/zoom_labels.h"
 
 /* Zoom 4: the world is 8192 px wide, which is 8 px for each px of the town. A tile is 256 px wide. */
 enum { ZOOM = 4, TILE = 256, TILES = 32, TILE_LEVEL = 5, ALL_LEVEL = 2, SHOWN = 8 };
@@ -45,11 +44,20 @@ static void add_crowd(town *t, uint32_t seed, double about_x, double about_y, bo
     }
 }
 
+/* Things so far apart that no surroundings of a tile have all of them. */
+static void add_outliers(town *t) {
+    add_point(t, "North", 300.0, 10.0);
+    add_point(t, "South", 500.0, 1010.0);
+    add_point(t, "West", 200.0, 300.0);
+    add_point(t, "East", 800.0, 300.0);
+}
+
 /* ---- The labels of a town ---- */
 
 typedef struct placed_town {
     town *town;
     camber_label_things things;
+    camber_label_shelf shelf;
     camber_zoom_labels *labels;
     int finest_level;
 } placed_town;
@@ -57,16 +65,16 @@ typedef struct placed_town {
 static placed_town *place_town(town *t, int finest_level, size_t block_things) {
     placed_town *p = calloc(1, sizeof *p);
     assert_non_null(p);
-    *p = (placed_town){.town = t, .finest_level = finest_level};
+    *p = (placed_town){.town = t, .finest_level = finest_level, .shelf.limit_bytes = 1 << 20};
     t->features.fonts = t->fonts;
     t->features.sprites = &t->sprites;
     assert_int_equal(camber_label_things_find(&t->features, NULL, &p->things), CAMBER_OK);
     const camber_zoom_labels_desc desc = {.features = &t->features,
                                           .things = &p->things,
+                                          .shelf = &p->shelf,
                                           .zoom = ZOOM,
                                           .finest_level = finest_level,
-                                          .block_things = block_things,
-                                          .kept_bytes = 1 << 20};
+                                          .block_things = block_things};
     assert_int_equal(camber_zoom_labels_create(&desc, &p->labels), CAMBER_OK);
     return p;
 }
@@ -97,74 +105,14 @@ static camber_labels draw(placed_town *p, uint32_t column, uint32_t row, uint32_
     return labels;
 }
 
-static bool touches(const camber_box *box, double x0, double y0, double size) {
-    return box->x0 < x0 + size && box->x1 > x0 && box->y0 < y0 + size && box->y1 > y0;
-}
-
-/* Moved by whole px, boxes and items must be the same to the last bit. */
-static bool is_same_box(const camber_box *a, const camber_box *b, double dx, double dy) {
-    return a->x0 - dx == b->x0 && a->y0 - dy == b->y0 && a->x1 - dx == b->x1 && a->y1 - dy == b->y1;
-}
-
-static bool is_same_item(const camber_labels *a, const camber_label_item *p, const camber_labels *b,
-                         const camber_label_item *q, double dx, double dy) {
-    return p->glyph == q->glyph && p->icon == q->icon && (double)p->x - dx == (double)q->x &&
-           (double)p->y - dy == (double)q->y && memcmp(&p->xx, &q->xx, 4 * sizeof p->xx) == 0 &&
-           p->unstretched_px == q->unstretched_px &&
-           memcmp(a->looks + p->look, b->looks + q->look, sizeof *a->looks) == 0;
-}
-
-/* ---- Where tiles meet ---- */
-
-typedef struct faults {
-    size_t cut, doubled, missing, extra, shown, crossing;
-} faults;
-
-/* Whether the items of a label of the whole picture are those of a label of the tile. */
-static bool is_whole(const camber_labels *whole, size_t a, const camber_labels *tile, size_t b, double dx, double dy) {
-    size_t i = 0, k = 0;
-    while (true) {
-        while (i < whole->item_count && whole->items[i].label != a)
-            i++;
-        while (k < tile->item_count && tile->items[k].label != b)
-            k++;
-        if (i == whole->item_count || k == tile->item_count)
-            return i == whole->item_count && k == tile->item_count;
-        if (!is_same_item(whole, whole->items + i++, tile, tile->items + k++, dx, dy))
-            return false;
-    }
-}
-
-static void compare_tile(const camber_labels *whole, const camber_labels *tile, double dx, double dy, faults *f) {
-    size_t expected = 0;
-    for (size_t a = 0; a < whole->label_count; a++) {
-        const camber_box *box = &whole->labels[a].box;
-        if (!touches(box, dx, dy, TILE))
-            continue;
-        size_t found = 0, at = 0;
-        expected++;
-        for (size_t b = 0; b < tile->label_count; b++)
-            if (whole->labels[a].feature == tile->labels[b].feature && is_same_box(box, &tile->labels[b].box, dx, dy)) {
-                at = b;
-                found++;
-            }
-        f->missing += found == 0;
-        f->doubled += found > 1;
-        f->cut += found == 1 && !is_whole(whole, a, tile, at, dx, dy);
-        f->crossing += box->x0 < dx || box->x1 > dx + TILE || box->y0 < dy || box->y1 > dy + TILE;
-    }
-    f->extra += tile->label_count - expected;
-    f->shown += tile->label_count;
-}
-
 /* Compares each of 8 x 8 tiles with what the picture of all of them has there. The tiles come in an odd order. */
-static faults compare_tiles(placed_town *all, placed_town *single, uint32_t column, uint32_t row) {
-    faults f = {0};
+static seam_faults compare_tiles(placed_town *all, placed_town *single, uint32_t column, uint32_t row) {
+    seam_faults f = {0};
     camber_labels whole = draw(all, column, row, SHOWN, 1.0);
     for (uint32_t i = 0; i < SHOWN * SHOWN; i++) {
         const uint32_t n = i * 37 % (SHOWN * SHOWN), x = n % SHOWN, y = n / SHOWN;
         camber_labels tile = draw(single, column + x, row + y, 1, 1.0);
-        compare_tile(&whole, &tile, x * TILE, y * TILE, &f);
+        seam_compare(&whole, &tile, (camber_box){x * TILE, y * TILE, (x + 1) * TILE, (y + 1) * TILE}, &f);
         camber_labels_free(&tile);
     }
     camber_labels_free(&whole);
@@ -176,18 +124,158 @@ static void test_tiles(void **state) {
     static const size_t divided[] = {0, 100, 500};
     town *t = open_town(EVERYTHING);
     add_crowd(t, 3, 384.0, 640.0, false);
+    add_outliers(t);
     placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX);
     for (size_t i = 0; i < sizeof divided / sizeof *divided; i++) {
         placed_town *single = place_town(t, TILE_LEVEL, divided[i]);
-        const faults f = compare_tiles(all, single, 8, 16);
+        const seam_faults f = compare_tiles(all, single, 8, 16);
         printf("# blocks of %zu things: %zu labels in tiles, %zu cross a border: %zu cut, %zu doubled, %zu missing, "
                "%zu of no picture\n",
                divided[i], f.shown, f.crossing, f.cut, f.doubled, f.missing, f.extra);
         assert_true(f.shown > 600 && f.crossing > 200);
-        assert_int_equal(f.cut + f.doubled + f.missing + f.extra, 0);
+        assert_int_equal(seam_count(&f), 0);
         free_placed(single);
     }
     free_placed(all);
+    close_town(t);
+}
+
+/* ---- Kept blocks ---- */
+
+enum { MOST_LISTED = 4096 };
+
+typedef struct list {
+    uint64_t looks[MOST_LISTED];
+    size_t count;
+} list;
+
+static camber_status take(void *user, const camber_label_square *block, const camber_shown_label *label) {
+    list *l = user;
+    const double size = 1.0 / exp2(block->level);
+    assert_true(seam_touches(&label->box, &(camber_box){block->column * size, block->row * size,
+                                                        (block->column + 1) * size, (block->row + 1) * size}));
+    assert_true(l->count < MOST_LISTED);
+    for (size_t i = 0; i < l->count; i++)
+        if (l->looks[i] == label->appearance)
+            return CAMBER_OK; /* of another block, too */
+    l->looks[l->count++] = label->appearance;
+    return CAMBER_OK;
+}
+
+/* The surroundings that settle a tile settle tiles around it, too, which are not placed again; even if labels are
+ * placed from south to north, and so depend on all that are south of them. */
+static void test_chains(void **state) {
+    (void)state;
+    static const char *const orders[] = {"auto", "viewport-y"};
+    size_t placed[2];
+    for (int i = 0; i < 2; i++) {
+        char layers[512];
+        snprintf(layers, sizeof layers,
+                 NAMES("names", "\"text-size\":12,\"text-allow-overlap\":false,"
+                                "\"symbol-z-order\":\"%s\""),
+                 orders[i]);
+        town *t = open_town(layers);
+        add_crowd(t, 21, 384.0, 640.0, false);
+        add_outliers(t);
+        placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
+        const seam_faults f = compare_tiles(all, single, 8, 16);
+        assert_true(f.shown > 200 && f.crossing > 100);
+        assert_int_equal(seam_count(&f), 0);
+        assert_true(single->shelf.placed < SHOWN * SHOWN / 2);
+        placed[i] = single->shelf.placed;
+        free_placed(single);
+        free_placed(all);
+        close_town(t);
+    }
+    printf("# 64 tiles: %zu blocks placed, %zu where labels depend on each other from south to north\n", placed[0],
+           placed[1]);
+}
+
+/* If all things are around a tile, they are placed once for all tiles. */
+static void test_few(void **state) {
+    (void)state;
+    town *t = open_town(EVERYTHING);
+    for (int i = 0; i < 100; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "Name %d", i);
+        add_point(t, name, 350.0 + 7.0 * (i % 10), 610.0 + 6.0 * (i / 10));
+    }
+    placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
+    camber_labels first = draw(single, 12, 20, 1, 1.0);
+    camber_labels_free(&first);
+    const seam_faults f = compare_tiles(all, single, 8, 16);
+    assert_int_equal(single->shelf.placed, 1);
+    assert_true(f.shown > 60);
+    assert_int_equal(seam_count(&f), 0);
+    free_placed(single);
+    free_placed(all);
+    close_town(t);
+}
+
+/* One limit holds for the blocks of all zooms. */
+static void test_shelf(void **state) {
+    (void)state;
+    enum { ZOOMS = 4 };
+    town *t = open_town(EVERYTHING);
+    add_crowd(t, 23, 384.0, 640.0, false);
+    placed_town *p = place_town(t, TILE_LEVEL, 0);
+    camber_zoom_labels *zooms[ZOOMS];
+    const camber_box around = {0.25, 0.5, 0.5, 0.75};
+    size_t most = 0, kept[2];
+    for (int limited = 0; limited < 2; limited++) {
+        p->shelf.limit_bytes = limited ? most / 3 : SIZE_MAX / 4;
+        for (int i = 0; i < ZOOMS; i++) {
+            static list l;
+            const camber_zoom_labels_desc desc = {.features = &t->features,
+                                                  .things = &p->things,
+                                                  .shelf = &p->shelf,
+                                                  .zoom = ZOOM - 1 + i,
+                                                  .finest_level = TILE_LEVEL};
+            l.count = 0;
+            assert_int_equal(camber_zoom_labels_create(&desc, zooms + i), CAMBER_OK);
+            assert_int_equal(camber_zoom_labels_list(zooms[i], &around, take, &l), CAMBER_OK);
+            assert_true(l.count > 0);
+        }
+        most = kept[limited] = p->shelf.held_bytes;
+        for (int i = 0; i < ZOOMS; i++)
+            camber_zoom_labels_destroy(zooms[i]);
+        assert_true(p->shelf.held_bytes == 0 && !p->shelf.blocks);
+    }
+    assert_true(kept[0] > 0 && kept[1] > 0 && kept[1] <= kept[0] / 3);
+    free_placed(p);
+    close_town(t);
+}
+
+/* The tree of things finds what looking at all of them finds. */
+static void test_tree(void **state) {
+    (void)state;
+    town *t = open_town(EVERYTHING);
+    add_crowd(t, 25, 1000.0, 640.0, false); /* over the antimeridian */
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "Long", (const double[]){-20.0, 5.0, 1030.0, 1000.0}, 2);
+    camber_label_things all, few[2];
+    assert_int_equal(camber_label_things_find(&t->features, NULL, &all), CAMBER_OK);
+    uint32_t seed = 29;
+    for (int i = 0; i < 200; i++) {
+        const double x = 1.4 * next_share(&seed) - 0.2, y = next_share(&seed),
+                     size = next_share(&seed) * (i % 2 ? 0.01 : 0.4);
+        const camber_box box = {x, y, x + size, y + size};
+        all.tree.codes = NULL; /* then it looks at all of them */
+        camber_label_things plain = all;
+        assert_int_equal(camber_label_things_select(&plain, &box, few), CAMBER_OK);
+        assert_int_equal(camber_label_things_make_tree(&plain), CAMBER_OK);
+        assert_int_equal(camber_label_things_select(&plain, &box, few + 1), CAMBER_OK);
+        assert_int_equal(few[0].count, few[1].count);
+        assert_int_equal(camber_label_things_touch(&plain, &box), few[0].count > 0);
+        if (few[0].count)
+            assert_memory_equal(few[0].items, few[1].items, few[0].count * sizeof *few[0].items);
+        assert_memory_equal(few[0].class_first, few[1].class_first, (all.class_count + 1) * sizeof *all.class_first);
+        camber_label_things_free(few);
+        camber_label_things_free(few + 1);
+        camber_free(t->context, plain.tree.codes);
+        camber_free(t->context, plain.tree.order);
+        camber_free(t->context, plain.tree.nodes);
+    }
+    camber_label_things_free(&all);
     close_town(t);
 }
 
@@ -210,7 +298,7 @@ static void test_seam(void **state) {
         for (size_t i = 0; i < 2; i++) {
             assert_int_equal(east.labels[i].feature, west.labels[i].feature);
             assert_true(east.labels[i].feature != 1);
-            assert_true(is_same_box(&east.labels[i].box, &west.labels[i].box, TILE, 0.0));
+            assert_true(seam_same_box(&east.labels[i].box, &west.labels[i].box, TILE, 0.0));
         }
         camber_labels_free(&east);
         camber_labels_free(&west);
@@ -223,12 +311,13 @@ static void test_crowded_seam(void **state) {
     (void)state;
     town *t = open_town(EVERYTHING);
     add_crowd(t, 5, 1022.0, 640.0, false);
+    add_outliers(t);
     placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX);
     placed_town *single = place_town(t, TILE_LEVEL, 0);
-    const faults east = compare_tiles(all, single, TILES - SHOWN, 16), west = compare_tiles(all, single, 0, 16);
+    const seam_faults east = compare_tiles(all, single, TILES - SHOWN, 16), west = compare_tiles(all, single, 0, 16);
     assert_true(east.shown > 300 && west.shown > 300);
-    assert_int_equal(east.cut + east.doubled + east.missing + east.extra, 0);
-    assert_int_equal(west.cut + west.doubled + west.missing + west.extra, 0);
+    assert_int_equal(seam_count(&east), 0);
+    assert_int_equal(seam_count(&west), 0);
     free_placed(single);
     free_placed(all);
     close_town(t);
@@ -295,6 +384,11 @@ static void test_too_long(void **state) {
     camber_labels labels = draw(p, 8, 16, SHOWN, 1.0);
     assert_int_equal(labels.label_count, 1);
     assert_int_equal(labels.labels[0].feature, 0);
+    assert_non_null(strstr(t->last, "A long, long n. of layer names reaches more than 512 px"));
+    camber_labels_free(&labels);
+    strcpy(t->last, "");
+    labels = draw(p, 8, 16, SHOWN, 1.0);
+    assert_string_equal(t->last, ""); /* once */
     camber_labels_free(&labels);
     free_placed(p);
     close_town(t);
@@ -325,25 +419,6 @@ static void test_too_wide(void **state) {
 
 /* ---- Lists ---- */
 
-enum { MOST_LISTED = 4096 };
-
-typedef struct list {
-    uint64_t looks[MOST_LISTED];
-    size_t count;
-} list;
-
-static camber_status take(void *user, const camber_label_square *block, const camber_shown_label *label) {
-    list *l = user;
-    const double size = 1.0 / exp2(block->level);
-    assert_true(touches(&label->box, block->column * size, block->row * size, size));
-    assert_true(l->count < MOST_LISTED);
-    for (size_t i = 0; i < l->count; i++)
-        if (l->looks[i] == label->appearance)
-            return CAMBER_OK; /* of another block, too */
-    l->looks[l->count++] = label->appearance;
-    return CAMBER_OK;
-}
-
 static int compare_looks(const void *a, const void *b) {
     const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
     return p < q ? -1 : p > q;
@@ -357,6 +432,7 @@ static void test_list(void **state) {
     const camber_box world = {0.0, 0.0, 1.0, 1.0};
     town *t = open_town(EVERYTHING);
     add_crowd(t, 13, 384.0, 640.0, false);
+    add_outliers(t);
     for (size_t i = 0; i < 3; i++) {
         placed_town *p = place_town(t, TILE_LEVEL, divided[i]);
         lists[i].count = 0;
@@ -442,10 +518,11 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_tiles),        cmocka_unit_test(test_seam),
-                                       cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled),
-                                       cmocka_unit_test(test_ratio),        cmocka_unit_test(test_too_long),
-                                       cmocka_unit_test(test_too_wide),     cmocka_unit_test(test_sections),
-                                       cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tiles),        cmocka_unit_test(test_chains),   cmocka_unit_test(test_few),
+        cmocka_unit_test(test_shelf),        cmocka_unit_test(test_tree),     cmocka_unit_test(test_seam),
+        cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled), cmocka_unit_test(test_ratio),
+        cmocka_unit_test(test_too_long),     cmocka_unit_test(test_too_wide), cmocka_unit_test(test_sections),
+        cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

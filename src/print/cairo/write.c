@@ -45,7 +45,9 @@ static cairo_surface_t *make_surface(const camber_page *page, camber_page_format
         describe(page, made);
         return made;
     }
-    return cairo_svg_surface_create_for_stream(write_bytes, s, width, height);
+    cairo_surface_t *made = cairo_svg_surface_create_for_stream(write_bytes, s, width, height);
+    cairo_svg_surface_set_document_unit(made, CAIRO_SVG_UNIT_PT); /* Cairo 1.18 would say px */
+    return made;
 }
 
 /* Lets text have its true size and place. */

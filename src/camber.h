@@ -522,7 +522,7 @@ typedef struct camber_mesh_info {
     size_t tight_joins;       /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
     size_t split_joins;       /* turns past 127 degrees */
     size_t undrawn_dots;      /* dots with butt caps, which have no area */
-    camber_stage_times times; /* of the last tessellation's stages, on the device's queue */
+    camber_stage_times times; /* of the last tessellation's stages; kernels classify when they first draw its lines */
 } camber_mesh_info;
 
 typedef struct camber_mesh camber_mesh;

@@ -111,6 +111,12 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features);
 }
 
+void camber_features_add_extract(camber_features *features, size_t first_polyline) {
+    if (features->extract_end != first_polyline)
+        features->extract_first = first_polyline;
+    features->extract_end = features->polyline_count;
+}
+
 uint64_t camber_features_key(const camber_features *f) {
     /* Addresses would not do: new sprites or points may have those of the old ones. */
     const uint64_t values[] = {f->changes,       f->point_count, f->polyline_count,

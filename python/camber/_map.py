@@ -263,8 +263,11 @@ class Map:
         if margin is None:
             margin = 0 if size is not None and not (title or subtitle) else MARGIN_SHARE * min(width, height)
         texts = {name: as_text(sheet[name]) for name in ("title", "subtitle")}
-        desc = ffi.new("camber_page_desc *", {**sheet, **texts, "width_mm": width, "height_mm": height, "margin_mm": margin,
-                                              "dpi": dpi, "ratio": ratio or 0})
+        folders = [ffi.new("char[]", folder) for folder in self._fonts]
+        pointers = ffi.new("char *[]", folders)
+        fonts = ffi.new("camber_fonts_desc *", {"folders": pointers, "folder_count": len(folders)})
+        desc = ffi.new("camber_page_desc *", {**sheet, **texts, "fonts": fonts, "width_mm": width, "height_mm": height,
+                                              "margin_mm": margin, "dpi": dpi, "ratio": ratio or 0})
         made = self._print(path, PAGES.get(ending), desc, fit, simplify, view)
         if made is not None:
             self._write(path, encode(made, PICTURES[ending], quality=quality, dpi=dpi, context=self._context))

@@ -29,7 +29,7 @@ typedef struct request {
     camber_overlay *overlay; /* drawn over a picture. NULL: none */
     char *posted;            /* posted_bytes of a body. NULL: none */
     size_t posted_bytes;
-    bool is_post, is_crowded; /* it is counted among the server's posts; there are too many of them */
+    bool is_post, is_crowded; /* it is counted among the server's posts; there is no room for its body */
     bool begun, asked, refused;
     int status; /* the status that was sent; 0: none yet */
     size_t sent_bytes;
@@ -41,9 +41,29 @@ typedef struct reply {
     const char *media_type, *cache_control;
     bool has_page, has_variants; /* it needs the page's headers; it may be sent compressed to other clients */
     bool is_stream;              /* it is an event stream, and body is NULL */
+    bool is_preflight;           /* it tells a browser what a page of another origin may send */
     char last_modified[CAMBER_DATE_SIZE];
     char location[64]; /* where the answer is instead; "": here */
 } reply;
+
+/* ---- Methods ---- */
+
+static int parse_route(const request *r, const char *method, camber_route_request *route) {
+    const camber_server_desc *desc = &r->listener->server->desc;
+    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
+    return camber_route_parse(&limits, method, r->client->path, route);
+}
+
+/* Whether the path is a picture's, which also takes POST. */
+static bool takes_post(const request *r, camber_route_request *route) {
+    return !r->listener->is_for_metrics && parse_route(r, "POST", route) != 405;
+}
+
+/* Returns the methods that the path takes. */
+static const char *find_methods(const request *r) {
+    camber_route_request route;
+    return takes_post(r, &route) ? "GET, HEAD, POST, OPTIONS" : "GET, HEAD";
+}
 
 /* ---- Sending ---- */
 
@@ -74,8 +94,13 @@ static void add_headers(const request *r, const reply *a, struct MHD_Response *r
     add(response, MHD_HTTP_HEADER_CACHE_CONTROL, a->cache_control);
     if (a->media_type)
         add(response, MHD_HTTP_HEADER_CONTENT_TYPE, a->media_type);
-    if (a->status == 405)
-        add(response, MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
+    if (a->status == 405 || a->is_preflight)
+        add(response, MHD_HTTP_HEADER_ALLOW, find_methods(r));
+    if (a->is_preflight) {
+        add(response, "Access-Control-Allow-Methods", find_methods(r));
+        add(response, "Access-Control-Allow-Headers", MHD_HTTP_HEADER_CONTENT_TYPE);
+        add(response, "Access-Control-Max-Age", "86400");
+    }
     if (a->status == 503)
         add(response, MHD_HTTP_HEADER_RETRY_AFTER, "1");
     if ((a->status == 200 || a->status == 304) && !a->is_stream)
@@ -192,6 +217,12 @@ static bool find_stored(camber_server *server, const camber_route_request *route
 /* A request for a missing tile within the zoom range gets a 204, because browsers log every 404. */
 static enum MHD_Result send_nothing(request *r) {
     reply a = {.status = 204, .cache_control = "public, max-age=300"};
+    return send_answer(r, &a);
+}
+
+/* Before a page of another origin posts GeoJSON, its browser asks whether it may. */
+static enum MHD_Result send_preflight(request *r) {
+    reply a = {.status = 204, .cache_control = "no-store", .is_preflight = true};
     return send_answer(r, &a);
 }
 
@@ -330,7 +361,9 @@ static void take_body(request *r, const char *bytes, size_t size) {
         r->is_post = true;
         r->is_crowded = atomic_fetch_add(&r->listener->server->posts, 1) >= MOST_POSTS;
     }
-    if (r->is_crowded || (!r->posted && !(r->posted = malloc(most))))
+    if (!r->is_crowded && !r->posted)
+        r->is_crowded = !(r->posted = malloc(most));
+    if (r->is_crowded)
         return;
     const size_t taken = size < most - r->posted_bytes ? size : most - r->posted_bytes;
     memcpy(r->posted + r->posted_bytes, bytes, taken);
@@ -592,12 +625,6 @@ static bool has_body(const request *r) {
     return (length && strcmp(length, "0") != 0) || header_of(r, MHD_HTTP_HEADER_TRANSFER_ENCODING);
 }
 
-static int parse_route(const request *r, const char *method, camber_route_request *route) {
-    const camber_server_desc *desc = &r->listener->server->desc;
-    const camber_route_limits limits = {desc->most_ratio, desc->most_px, desc->maps, desc->map_count};
-    return camber_route_parse(&limits, method, r->client->path, route);
-}
-
 /* Whether the request's body is read: that of a picture's GeoJSON. */
 static bool takes_body(const request *r, const char *method) {
     camber_route_request route;
@@ -632,6 +659,8 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
     camber_client_enter(r->client, CAMBER_CLIENT_TAKES);
     snprintf(r->method, sizeof r->method, "%.*s", (int)sizeof r->method - 1, method);
     int status = is_whole(r, version) ? parse_route(r, method, &r->route) : 404;
+    if (status == 405 && strcmp(method, MHD_HTTP_METHOD_OPTIONS) == 0 && takes_post(r, &r->route))
+        return send_preflight(r);
     /* An archive and the metrics have no pictures, so a path of a picture gets a 404 instead of a 400. */
     if (status == 400 && (listener->is_for_metrics || look(listener->server, &r->route, NULL).is_archive))
         status = 404;

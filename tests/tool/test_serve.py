@@ -204,6 +204,33 @@ def test_overlays():
     server.stop()
 
 
+def test_preflight():
+    """A page of another origin may post GeoJSON: its browser asks first, with OPTIONS."""
+    write_map("map.json")
+    server = Server("map.json", "--cors", "https://example.com", "--max-size", "600")
+    taken = "GET, HEAD, POST, OPTIONS"
+    for path in ("/static/auto/300x200.png", "/dark/static/1,2,3/4x4.webp?path=", "/static/auto/601x1.png"):
+        status, headers, body = server.request(path, "OPTIONS", Origin="https://example.com", Access_Control_Request_Method="POST",
+                                               Access_Control_Request_Headers="content-type")
+        expect(status == 204 and not body and headers["allow"] == headers["access-control-allow-methods"] == taken, f"{path}: {status} {headers}")
+        expect(headers["access-control-allow-origin"] == "https://example.com", headers)
+        expect(headers["access-control-allow-headers"].lower() == "content-type", headers)
+        status, headers, _ = server.request(path, "PUT")
+        expect(status == 405 and headers["allow"] == taken, f"{path}: {status} {headers}")
+    for path, port in (("/health", None), ("/tiles.json", None), ("/static/auto/300x200.png", server.metrics_port)):
+        status, headers, _ = server.request(path, "OPTIONS", port=port)
+        expect(status == 405 and headers["allow"] == "GET, HEAD" and "access-control-allow-methods" not in headers, f"{path}: {status}")
+    server.stop()
+
+
+def test_long_name():
+    """A name that is cut is not cut within a character, which no JSON could contain."""
+    write_map("map.json")
+    server = Server("map.json", "--name", "ä" * 200)
+    expect(json.loads(server.get("/tiles.json")[2])["name"] == "ä" * 127, "a long name")
+    server.stop()
+
+
 def test_overlay_errors():
     """Answers say what is wrong with a picture, with its number, and do not repeat the request's own text."""
     write_map("map.json")

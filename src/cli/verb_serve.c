@@ -195,7 +195,11 @@ static void find_name(reading *it) {
     const size_t length = *name == '.' ? strlen(name) : strcspn(name, "./");
     const char *own = json_string_value(json_object_get(it->about, "name"));
     json_t *text = options->name ? json_string(options->name) : own ? json_string(own) : json_stringn(name, length);
-    snprintf(it->name, sizeof it->name, "%s", text ? json_string_value(text) : "map");
+    const char *whole = text ? json_string_value(text) : "map";
+    size_t kept = strnlen(whole, sizeof it->name - 1);
+    while (kept && ((unsigned char)whole[kept] & 0xc0) == 0x80) /* no character is cut, which would not be UTF-8 */
+        kept--;
+    snprintf(it->name, sizeof it->name, "%.*s", (int)kept, whole);
     json_decref(text);
     it->content.name = it->name;
 }

@@ -276,6 +276,26 @@ def test_failures():
     job.end()
 
 
+def test_killed():
+    """A run that is killed as it keeps the extract has drawn it: the next one does not put the former map back for good."""
+    job = Job()
+    publish(1)
+    expect(job.run("draw")[0] == 0, "the first archive")
+    job.serve("maps/city.pmtiles")
+    expect(job.run("reload")[0] == 0, "the first archive")
+    first = job.server.get(TILE)[2]
+    os.mkdir("fake")
+    with open("fake/mv", "w", encoding="utf-8") as file:
+        file.write(f'#!/bin/sh\n{shutil.which("mv")} "$@"\ncase $3 in */extract) kill -9 $PPID ;; esac\n')
+    os.chmod("fake/mv", 0o755)
+    publish(2)
+    status, said = job.run("draw", PATH=os.path.abspath("fake") + ":" + os.environ["PATH"])
+    expect(status == -signal.SIGKILL, f"it is not killed: {status} {said}")
+    status, said = job.run()
+    expect(status == 0 and job.server.get(TILE)[2] != first, f"the former map is served for good: {said}")
+    job.end()
+
+
 def test_full_disk():
     job = Job()
     if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", "maps"], capture_output=True,

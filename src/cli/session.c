@@ -279,7 +279,8 @@ int camber_session_need(camber_session *session, camber_needs needs) {
         return camber_report_status(session->report, status);
     if (session->opener) {
         join(session->opener);
-        session->opener->told = session->report;
+        if (session->opener->told != session->report) /* once it is set, the thread that draws reads it */
+            session->opener->told = session->report;
         return camber_report_status(&session->opener->report, session->opener->status);
     }
     return camber_report_status(session->report, camber_session_open(session, needs));

@@ -29,6 +29,7 @@ int camber_verb_serve(camber_session *session) {
 #include <malloc.h>
 #endif
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -52,18 +53,19 @@ typedef struct served {
 typedef struct wishes {
     pthread_mutex_t mutex;
     pthread_cond_t changed;
-    bool reload, stop;
-    bool begins; /* the input is being read for the first time, so there is nothing to finish yet */
+    bool reload;
+    atomic_bool stop; /* also read without the mutex */
+    bool begins;      /* the input is being read for the first time, so there is nothing to finish yet */
     camber_guard *guard;
-    const char *edited;  /* a file that is watched; NULL: none */
-    struct stat about;   /* its state when it was last read */
-    double beat_ms;      /* when listeners were last checked */
-    int failed_pictures; /* failures in a row, counted by the thread that draws */
-    bool lost;           /* the device is lost: a reason to stop */
-    bool given_up;       /* the current reading takes too much time or memory */
-    served *maps;        /* map_count of them */
-    const char **names;  /* of the maps */
-    const char **inputs; /* of all maps */
+    const char *edited;   /* a file that is watched; NULL: none */
+    struct stat about;    /* its state when it was last read */
+    double beat_ms;       /* when listeners were last checked */
+    int failed_pictures;  /* failures in a row, counted by the thread that draws */
+    bool lost;            /* the device is lost: a reason to stop */
+    atomic_bool given_up; /* the current reading takes too much time or memory; also read without the mutex */
+    served *maps;         /* map_count of them */
+    const char **names;   /* of the maps */
+    const char **inputs;  /* of all maps */
     size_t map_count;
     rereading *left; /* a reading that was given up and has not ended yet; NULL: none */
 } wishes;

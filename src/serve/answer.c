@@ -122,7 +122,7 @@ static void add_headers(const request *r, const reply *a, struct MHD_Response *r
 /* Sends the answer, and releases its body. */
 static enum MHD_Result send_answer(request *r, reply *a) {
     static char nothing[1];
-    if (a->status == 200 && is_known(r, a))
+    if (a->status == 200 && strcmp(r->method, "POST") != 0 && is_known(r, a))
         a->status = 304;
     const bool empty = a->status == 304 || a->status == 204;
     struct MHD_Response *response = empty ? MHD_create_response_from_buffer(0, nothing, MHD_RESPMEM_PERSISTENT)

@@ -195,6 +195,8 @@ def test_overlays():
     point = {"type": "Feature", "properties": {"marker-color": "blue"}, "geometry": {"type": "Point", "coordinates": [0.5, 40.5]}}
     status, body = post(server, view, json.dumps({"type": "Feature", "properties": look, "geometry": polygon}))
     expect(status == 200 and decode(body) == box, f"GeoJSON differs from its path: {status}")
+    status, again = post(server, view, json.dumps({"type": "Feature", "properties": look, "geometry": polygon}), **{"If-None-Match": "*"})
+    expect(status == 200 and again == body, f"a POST with a condition: {status}")
     status, body = post(server, view, json.dumps({"type": "FeatureCollection", "features": [point]}), Transfer_Encoding="")
     expect(status == 200 and decode(body) == pin, "a point is no marker")
     status, body = post(server, "/static/auto/300x300.png?padding=0&fill=red&stroke=none", json.dumps(polygon))

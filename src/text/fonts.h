@@ -97,6 +97,10 @@ typedef struct camber_text_key {
 /* Does the work of camber_text_shape, but copies a text that was shaped for the same key if it is still remembered. */
 camber_status camber_text_recall(camber_fonts *fonts, const camber_text_key *key, const camber_text_desc *desc,
                                  camber_text **text);
+/* Copies a remembered text, if it is found. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_text_memo_find(camber_fonts *fonts, const camber_text_key *key, bool *found, camber_text **text);
+/* Remembers a copy of a text, unless it is long. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_text_memo_put(camber_fonts *fonts, const camber_text_key *key, const camber_text *text);
 void camber_text_memo_free(camber_context *context, struct camber_text_memo *memo);
 
 #endif

@@ -1,8 +1,8 @@
-/* Remembers texts that were shaped, because the name of a street is needed at each zoom and in each part of the map
- * that is placed by itself.
+/* Copies texts, and remembers those that were shaped, because the name of a street is needed at each zoom and in each
+ * part of the map that is placed by itself.
  *
- * Input: what a text depends on, as bytes. Output: a copy of the text. Main idea: a text has one slot, which the hash
- * of its key chooses, and takes the place of the text that was there, so the memory is bounded. */
+ * Input: a text, and what it depends on, as bytes. Output: copies of the text. Main idea: a text has one slot, which
+ * the hash of its key chooses, and takes the place of the text that was there, so the memory is bounded. */
 #include "text/fonts.h"
 
 enum { SLOTS = 16384, MOST_GLYPHS = 64 };
@@ -17,6 +17,15 @@ typedef struct remembered {
 struct camber_text_memo {
     remembered slots[SLOTS];
 };
+
+void camber_text_destroy(camber_text *text) {
+    if (!text)
+        return;
+    camber_context *context = text->context;
+    camber_free(context, text->glyphs);
+    camber_free(context, text->lines);
+    camber_free(context, text);
+}
 
 static void forget(camber_context *context, remembered *slot) {
     camber_free(context, slot->key);
@@ -37,8 +46,8 @@ static camber_text *copy_text(const camber_text *text) {
         return NULL;
     *copy = *text;
     copy->glyphs = camber_alloc(context, text->glyph_count, sizeof *copy->glyphs);
-    copy->lines = camber_alloc(context, text->line_count, sizeof *copy->lines);
-    if (!copy->glyphs || !copy->lines) {
+    copy->lines = copy->glyphs ? camber_alloc(context, text->line_count, sizeof *copy->lines) : NULL;
+    if (!copy->lines) {
         camber_text_destroy(copy);
         return NULL;
     }
@@ -49,38 +58,34 @@ static camber_text *copy_text(const camber_text *text) {
     return copy;
 }
 
-/* Puts a copy of a text into its slot. */
-static camber_status remember(camber_context *context, remembered *slot, const camber_text_key *key,
-                              const camber_text *text) {
-    forget(context, slot);
-    slot->key = camber_alloc(context, key->size_bytes, 1);
-    slot->text = copy_text(text);
-    if (!slot->key || !slot->text) {
-        forget(context, slot);
+static remembered *slot_of(camber_fonts *fonts, const camber_text_key *key) {
+    if (!fonts->memo && !(fonts->memo = camber_alloc_zero(fonts->context, 1, sizeof *fonts->memo)))
+        return NULL;
+    return fonts->memo->slots + (key->hash ^ key->hash >> 32) % SLOTS;
+}
+
+camber_status camber_text_memo_find(camber_fonts *fonts, const camber_text_key *key, bool *found, camber_text **text) {
+    const remembered *slot = slot_of(fonts, key);
+    if (!slot)
+        return CAMBER_ERROR_MEMORY;
+    *found = slot->key && slot->hash == key->hash && slot->key_size == key->size_bytes &&
+             memcmp(slot->key, key->bytes, key->size_bytes) == 0;
+    return !*found || (*text = copy_text(slot->text)) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+camber_status camber_text_memo_put(camber_fonts *fonts, const camber_text_key *key, const camber_text *text) {
+    remembered *slot = slot_of(fonts, key);
+    if (!slot)
+        return CAMBER_ERROR_MEMORY;
+    if (text->glyph_count > MOST_GLYPHS)
+        return CAMBER_OK;
+    forget(fonts->context, slot);
+    if (!(slot->key = camber_alloc(fonts->context, key->size_bytes, 1)) || !(slot->text = copy_text(text))) {
+        forget(fonts->context, slot);
         return CAMBER_ERROR_MEMORY;
     }
     memcpy(slot->key, key->bytes, key->size_bytes);
     slot->key_size = key->size_bytes;
     slot->hash = key->hash;
     return CAMBER_OK;
-}
-
-camber_status camber_text_recall(camber_fonts *fonts, const camber_text_key *key, const camber_text_desc *desc,
-                                 camber_text **text) {
-    camber_context *context = fonts->context;
-    if (!fonts->memo && !(fonts->memo = camber_alloc_zero(context, 1, sizeof *fonts->memo)))
-        return CAMBER_ERROR_MEMORY;
-    remembered *slot = fonts->memo->slots + (key->hash ^ key->hash >> 32) % SLOTS;
-    if (slot->key && slot->hash == key->hash && slot->key_size == key->size_bytes &&
-        memcmp(slot->key, key->bytes, key->size_bytes) == 0)
-        return (*text = copy_text(slot->text)) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
-    camber_text *made = NULL;
-    camber_status status = camber_text_shape(fonts, desc, &made);
-    if (status == CAMBER_OK && made->glyph_count <= MOST_GLYPHS)
-        status = remember(context, slot, key, made);
-    if (status == CAMBER_OK)
-        *text = made;
-    else
-        camber_text_destroy(made);
-    return status;
 }

@@ -1,15 +1,6 @@
 /* Makes texts. */
 #include "text/fonts.h"
 
-void camber_text_destroy(camber_text *text) {
-    if (!text)
-        return;
-    camber_context *context = text->context;
-    camber_free(context, text->glyphs);
-    camber_free(context, text->lines);
-    camber_free(context, text);
-}
-
 /* Checks that all ranges that the text asked for could be loaded. If not, the next text tries again. */
 static camber_status check_ranges(camber_fonts *fonts) {
     camber_status status = CAMBER_OK;
@@ -42,5 +33,22 @@ camber_status camber_text_shape(camber_fonts *fonts, const camber_text_desc *des
         camber_text_destroy(made);
     else
         *text = made;
+    return status;
+}
+
+camber_status camber_text_recall(camber_fonts *fonts, const camber_text_key *key, const camber_text_desc *desc,
+                                 camber_text **text) {
+    camber_text *made = NULL;
+    bool found;
+    camber_status status = camber_text_memo_find(fonts, key, &found, text);
+    if (status != CAMBER_OK || found)
+        return status;
+    status = camber_text_shape(fonts, desc, &made);
+    if (status == CAMBER_OK)
+        status = camber_text_memo_put(fonts, key, made);
+    if (status == CAMBER_OK)
+        *text = made;
+    else
+        camber_text_destroy(made);
     return status;
 }

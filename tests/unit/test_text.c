@@ -938,6 +938,68 @@ static void test_broken_files(void **state) {
     folder_remove(folder);
 }
 
+/* ---- Texts that are remembered ---- */
+
+static camber_text *recall(maker *m, const char *key, uint64_t hash, const char *text) {
+    const camber_text_run run = run_of(text, noto_sans);
+    const camber_text_desc desc = {.runs = &run, .run_count = 1};
+    const camber_text_key all = {key, strlen(key), hash};
+    camber_text *made = NULL;
+    assert_int_equal(camber_text_recall(m->fonts, &all, &desc, &made), CAMBER_OK);
+    return made;
+}
+
+/* Whether both texts have the same glyphs in the same places. The texts are destroyed. */
+static bool take_equal(camber_text *a, camber_text *b) {
+    bool equal = a->glyph_count == b->glyph_count && a->line_count == b->line_count && a->left == b->left &&
+                 a->right == b->right && a->top == b->top && a->bottom == b->bottom && a->glyphs != b->glyphs;
+    for (size_t i = 0; i < a->glyph_count && equal; i++)
+        equal = a->glyphs[i].glyph == b->glyphs[i].glyph && a->glyphs[i].x == b->glyphs[i].x &&
+                a->glyphs[i].y == b->glyphs[i].y && a->glyphs[i].byte == b->glyphs[i].byte;
+    for (size_t i = 0; i < a->line_count && equal; i++)
+        equal = a->lines[i].first == b->lines[i].first && a->lines[i].count == b->lines[i].count &&
+                a->lines[i].width == b->lines[i].width;
+    camber_text_destroy(a);
+    camber_text_destroy(b);
+    return equal;
+}
+
+static void test_remembered(void **state) {
+    (void)state;
+    maker m;
+    char long_text[101];
+    make_shipped(&m);
+    memset(long_text, 'w', 100);
+    long_text[100] = '\0';
+    /* A key decides, not the desc: what is found has not been shaped again. */
+    assert_true(take_equal(recall(&m, "a", 1, "Oslo"), shape(&m, "Oslo", noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "a", 1, "Bergen"), shape(&m, "Oslo", noto_sans, (camber_text_desc){0})));
+    /* Keys of one hash share a slot, and each has its own text all the same. */
+    assert_true(take_equal(recall(&m, "b", 1, "Bergen"), shape(&m, "Bergen", noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "ab", 1, "Trondheim"), shape(&m, "Trondheim", noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "a", 1, "Moss"), shape(&m, "Moss", noto_sans, (camber_text_desc){0})));
+    /* Long texts are not remembered. */
+    assert_true(take_equal(recall(&m, "c", 2, long_text), shape(&m, long_text, noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "c", 2, "Voss"), shape(&m, "Voss", noto_sans, (camber_text_desc){0})));
+    unmake(&m);
+}
+
+static camber_status recall_once(camber_context *context, void *user) {
+    const camber_text_run run = run_of("Oslo", noto_sans);
+    const camber_text_desc desc = {.runs = &run, .run_count = 1};
+    const camber_text_key key = {"a", 1, 1};
+    camber_fonts *fonts = NULL;
+    camber_text *texts[2] = {NULL, NULL};
+    (void)user;
+    camber_status status = camber_fonts_create(context, &(camber_fonts_desc){.no_system = true}, &fonts);
+    for (size_t i = 0; i < 2 && !status; i++)
+        status = camber_text_recall(fonts, &key, &desc, texts + i);
+    for (size_t i = 0; i < 2; i++)
+        camber_text_destroy(texts[i]);
+    camber_fonts_destroy(fonts);
+    return status;
+}
+
 static camber_status shape_once(camber_context *context, void *user) {
     const camber_text_run run = run_of("Oslo \xd7\x90 (M\xc3\xbchle)", noto_sans);
     camber_fonts *fonts = NULL;
@@ -960,6 +1022,7 @@ static void test_no_memory(void **state) {
     host h;
     camber_context *context = host_context(&h);
     each_allocation_fails(&h, shape_once, context, NULL);
+    each_allocation_fails(&h, recall_once, context, NULL);
     host_done(&h, context);
 }
 
@@ -990,6 +1053,7 @@ int main(void) {
         cmocka_unit_test(test_long),
         cmocka_unit_test(test_invalid),
         cmocka_unit_test(test_broken_files),
+        cmocka_unit_test(test_remembered),
         cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

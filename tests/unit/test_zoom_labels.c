@@ -191,6 +191,23 @@ static void test_chains(void **state) {
            placed[1]);
 }
 
+/* The first tile is placed by itself; if more are wanted, a large block around them is. */
+static void test_growth(void **state) {
+    (void)state;
+    town *t = open_town(NAMES("names", "\"text-size\":12"));
+    add_crowd(t, 21, 384.0, 640.0, false);
+    placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
+    camber_labels first = draw(single, 12, 20, 1, 1.0);
+    assert_int_equal(single->shelf.placed, 1);
+    camber_labels_free(&first);
+    const seam_faults f = compare_tiles(all, single, 8, 16);
+    assert_int_equal(seam_count(&f), 0);
+    assert_int_equal(single->shelf.placed, 2);
+    free_placed(single);
+    free_placed(all);
+    close_town(t);
+}
+
 /* If all things are around a tile, they are placed once for all tiles. */
 static void test_few(void **state) {
     (void)state;
@@ -519,10 +536,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tiles),        cmocka_unit_test(test_chains),   cmocka_unit_test(test_few),
-        cmocka_unit_test(test_shelf),        cmocka_unit_test(test_tree),     cmocka_unit_test(test_seam),
-        cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled), cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_too_long),     cmocka_unit_test(test_too_wide), cmocka_unit_test(test_sections),
-        cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
+        cmocka_unit_test(test_tiles),    cmocka_unit_test(test_growth),       cmocka_unit_test(test_chains),
+        cmocka_unit_test(test_few),      cmocka_unit_test(test_shelf),        cmocka_unit_test(test_tree),
+        cmocka_unit_test(test_seam),     cmocka_unit_test(test_crowded_seam), cmocka_unit_test(test_shuffled),
+        cmocka_unit_test(test_ratio),    cmocka_unit_test(test_too_long),     cmocka_unit_test(test_too_wide),
+        cmocka_unit_test(test_sections), cmocka_unit_test(test_list),         cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
 #include "bench.h"
 
 #include "base/base.h"
-#include "lines/importance.h"
+#include "camber_network.h"
 #include "validate/statistics.h"
 
 #include <stdlib.h>

@@ -64,6 +64,34 @@ static void measure_python(bench *b, json_t *result) {
                             &(bench_figure){"python", "Porto in Python", "matplotlib", matplotlib_ms / ms, false});
 }
 
+/* examples/table.py: lines of a GeoDataFrame coloured by a column, in one call. */
+static void measure_table(json_t *result) {
+    const char *const python = find_python();
+    const char *const arguments[] = {python, CAMBER_BENCH_EXAMPLES "/table.py", NULL};
+    const bench_child child = python ? bench_child_run(arguments, NULL, NULL) : (bench_child){.status = 1};
+    const char *first = child.output ? strstr(child.output, "camber: ") : NULL;
+    const char *second = first ? strstr(first, "matplotlib: ") : NULL;
+    const char *third = second ? strstr(second, "datashader: ") : NULL;
+    const char *density = first ? strstr(first, "density: ") : NULL;
+    double our_ms = 0, their_ms = 0, shader_ms = 0, density_ms = 0;
+    const bool read = child.status == 0 && second && sscanf(first, "camber: %lf ms", &our_ms) == 1 &&
+                      sscanf(second, "matplotlib: %lf ms", &their_ms) == 1;
+    if (third)
+        (void)sscanf(third, "datashader: %lf ms", &shader_ms); /* 0: it is not there */
+    if (density)
+        (void)sscanf(density, "density: %lf ms", &density_ms);
+    free(child.output);
+    if (!read) {
+        leave_out("a GeoDataFrame beside matplotlib", "Python here has no geopandas, or examples/table.py fails");
+        return;
+    }
+    bench_result_add_row(result, json_pack("{s:s, s:s, s:o, s:o, s:o, s:o}", "key", "table", "name",
+                                           "500,000 lines of a GeoDataFrame by a column", "camber_ms", bench_ms(our_ms),
+                                           "matplotlib_ms", bench_ms(their_ms), "datashader_ms", bench_ms(shader_ms),
+                                           "density_ms", bench_ms(density_ms)));
+    bench_result_add_figure(result, &(bench_figure){"table", "GeoDataFrame", "matplotlib", their_ms / our_ms, false});
+}
+
 /* ---- The page ---- */
 
 static void measure_page(bench *b, json_t *result) {
@@ -95,6 +123,8 @@ static json_t *measure(bench *b, const char *only) {
     json_t *result = bench_result_new();
     if (b->size != BENCH_TINY && (!only || strcmp(only, "python") == 0))
         measure_python(b, result);
+    if (b->size != BENCH_TINY && (!only || strcmp(only, "table") == 0))
+        measure_table(result);
     if (b->size != BENCH_TINY && (!only || strcmp(only, "page") == 0))
         measure_page(b, result);
     return result;
@@ -110,6 +140,13 @@ static void print(const json_t *result, FILE *to) {
                     bench_text(row, "name"), bench_number(row, "camber_ms"), bench_number(row, "matplotlib_ms"),
                     bench_number(row, "matplotlib_ms") / bench_number(row, "camber_ms"),
                     bench_number(row, "difference"));
+        else if (strcmp(bench_text(row, "key"), "table") == 0)
+            fprintf(
+                to,
+                "%s: camber %.0f ms, matplotlib %.0f ms, datashader %.0f ms (0: not installed); density of 10 million "
+                "points %.0f ms\n",
+                bench_text(row, "name"), bench_number(row, "camber_ms"), bench_number(row, "matplotlib_ms"),
+                bench_number(row, "datashader_ms"), bench_number(row, "density_ms"));
         else
             fprintf(to, "%s: %.0f ms in the middle, %.0f ms for 95 of 100, %.0f ms at most, of %.0f drags\n",
                     bench_text(row, "name"), bench_number(row, "median_ms"), bench_number(row, "late_ms"),

@@ -34,12 +34,15 @@
 #define CAMBER_BRUSH_UNION 1u /* their union is computed first, and drawn once */
 #define CAMBER_BRUSH_MASKED                                                                                            \
     2u /* in a masked layer, a translucent colour replaces what is below it; only CAMBER_RASTER_RICH */
-#define CAMBER_BRUSH_AREA 3u         /* they are the edges of rings, and their inside is drawn: area.h */
-#define CAMBER_BRUSH_AREA_EVENODD 4u /* the same, by CAMBER_FILL_EVENODD */
+#define CAMBER_BRUSH_SUM 3u  /* each is drawn over the others, and their area times the brush's red is added up */
+#define CAMBER_BRUSH_AREA 4u /* they are the edges of rings, and their inside is drawn: area.h */
+#define CAMBER_BRUSH_AREA_EVENODD 5u /* the same, by CAMBER_FILL_EVENODD */
 
 /* A colour and mode that segments are drawn with. Layers and groups are composited as a whole; number 0 is none. A
  * layer belongs to one group. A fill of the picture is an area without edges, inside which all of the picture is: only
- * its brush exists. If there are fills, brush 0 draws nothing, and its fill is the topmost one. */
+ * its brush exists. If there are fills, brush 0 draws nothing, and its fill is the topmost one.
+ *
+ * If a brush is a sum, all of them are. Nothing hides anything then, and pixels are floats instead of colours. */
 typedef struct camber_brush {
     float r, g, b, a;                    /* not premultiplied */
     camber_u32 mode, layer, group, fill; /* fill: the brush of the next fill below this one. 0: none */

@@ -130,7 +130,8 @@ CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_
 
 /* Whether no further segment would show. A cell that is filled in a layer or group may still be translucent. */
 CAMBER_FN int camber_tile_is_full(const camber_tile_state *c) {
-    const int opaque = c->now.mode != CAMBER_BRUSH_UNION && camber_tile_level(c) == CAMBER_PICTURE;
+    const int opaque =
+        c->now.mode != CAMBER_BRUSH_UNION && c->now.mode != CAMBER_BRUSH_SUM && camber_tile_level(c) == CAMBER_PICTURE;
     return (c->done | (opaque ? c->filled : 0)) == ~(camber_u64)0;
 }
 
@@ -166,10 +167,10 @@ CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_
 }
 
 /* Counts a segment that was drawn into a cell. After every CAMBER_FULL_CHECK_INTERVAL it checks if the cell is filled.
- */
+ * A sum is exact, so it does not stop early. */
 CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
-    if (c->now.mode != CAMBER_BRUSH_UNION && ++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL == 0 &&
-        c->now.a == 1.0f && camber_lets_nothing(c->brush[i]))
+    if (c->now.mode != CAMBER_BRUSH_UNION && c->now.mode != CAMBER_BRUSH_SUM &&
+        ++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL == 0 && c->now.a == 1.0f && camber_lets_nothing(c->brush[i]))
         c->filled |= (camber_u64)1 << i;
 }
 
@@ -180,7 +181,8 @@ CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
         c->brush[i][v] *= through;
     if (through == 0.0f) {
         c->filled |= (camber_u64)1 << i;
-        c->whole |= c->now.mode == CAMBER_BRUSH_UNION ? 0 : (camber_u64)1 << i; /* a union's opacity is applied later */
+        /* A union's opacity is applied later, and a sum has more than one colour. */
+        c->whole |= c->now.mode == CAMBER_BRUSH_UNION || c->now.mode == CAMBER_BRUSH_SUM ? 0 : (camber_u64)1 << i;
     }
 }
 
@@ -227,6 +229,12 @@ CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, 
         area = camber_united(area, c->sums[i][0][v], c->sums[i][1][v], c->sums[i][2][v]) * c->now.a;
     const camber_real through = camber_tile_through(c, level, i, v, is_new);
     camber_real seen = through * area;
+    if (c->now.mode == CAMBER_BRUSH_SUM) { /* the level goes on letting everything through */
+        camber_tile_add(&c->level[level][i][0][v], area * c->now.r, is_new);
+        c->level[level][i][1][v] = c->level[level][i][2][v] = CAMBER_REAL(0.0f);
+        c->level[level][i][3][v] = through;
+        return;
+    }
 #if CAMBER_HAS_MASKS
     seen *= c->layer_alpha;
     if (is_new || c->now.mode == CAMBER_BRUSH_MASKED)
@@ -369,10 +377,13 @@ CAMBER_FN int camber_tile_has_pixels(const camber_tile_state *c, int i) {
     return ((c->touched[CAMBER_PICTURE] | c->brushed) >> i & 1u) != 0u;
 }
 
-/* Returns the pixels of a vector, over the background. Call it after camber_tile_end, once for each vector. */
+/* Returns the pixels of a vector, over the background: colours, or the bits of sums. Call it after camber_tile_end,
+ * once for each vector. */
 CAMBER_FN camber_words camber_tile_pixels(camber_tile_state *c, int i, int v, const float *back) {
     if (c->brushed >> i & 1u)
         camber_tile_close_vector(c, CAMBER_PICTURE, i, v, !(c->touched[CAMBER_PICTURE] >> i & 1u));
+    if (c->now.mode == CAMBER_BRUSH_SUM)
+        return CAMBER_AS_WORDS(c->level[CAMBER_PICTURE][i][0][v]);
     const camber_real through = c->level[CAMBER_PICTURE][i][3][v];
     return camber_rgba(c->level[CAMBER_PICTURE][i][0][v] + through * back[0],
                        c->level[CAMBER_PICTURE][i][1][v] + through * back[1],

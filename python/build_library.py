@@ -13,9 +13,10 @@ import sys
 from cffi import FFI
 
 HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_text.h",
-           "camber_map.h", "camber_tiles.h")
+           "camber_map.h", "camber_tiles.h", "camber_print.h")
 
-# Rows with straight (not premultiplied) alpha are written to an array by C code, without Python and its lock.
+# Rows with straight (not premultiplied) alpha are written to an array by C code, and pages to a file, without Python and
+# its lock.
 HELPERS = """
 typedef struct camber_python_picture {
     uint8_t *rgba;
@@ -24,9 +25,13 @@ typedef struct camber_python_picture {
 } camber_python_picture;
 bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count);
+void *camber_python_open(const char *path);
+bool camber_python_write(void *file, const void *bytes, size_t size_bytes);
+bool camber_python_close(void *file);
 """
 
 SOURCE = """
+#include <stdio.h>
 #include <string.h>
 """ + "".join("#include <%s>\n" % name for name in HEADERS) + HELPERS + """
 bool camber_python_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -50,6 +55,18 @@ void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count) {
             to[c] = (uint8_t)((from[c] * from[3] + 127) / 255);
         to[3] = from[3];
     }
+}
+
+void *camber_python_open(const char *path) {
+    return fopen(path, "wb");
+}
+
+bool camber_python_write(void *file, const void *bytes, size_t size_bytes) {
+    return fwrite(bytes, 1, size_bytes, file) == size_bytes;
+}
+
+bool camber_python_close(void *file) {
+    return fclose(file) == 0;
 }
 """
 

@@ -522,7 +522,7 @@ typedef struct camber_mesh_info {
     size_t tight_joins;       /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
     size_t split_joins;       /* turns past 127 degrees */
     size_t undrawn_dots;      /* dots with butt caps, which have no area */
-    camber_stage_times times; /* of the last tessellation's stages, on the device's queue */
+    camber_stage_times times; /* of the last tessellation's stages; kernels classify when they first draw its lines */
 } camber_mesh_info;
 
 typedef struct camber_mesh camber_mesh;
@@ -742,6 +742,16 @@ CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const
  * stats and the return values are as for camber_renderer_render. The pixels are undefined on failure. */
 CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame,
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
+
+/* Counts lines instead of drawing them: each pixel gets the sum, over all rows, of the area that a row's polylines
+ * cover of it, times the red of the row's paint. Within a row, coverage is accumulated as in an opaque pass, so a line
+ * that crosses itself counts once; to count polylines one by one, give each its own row. Sums are floats, are not
+ * limited, and are added in the same order in every run. The passes have opaque lines, without fills, ramps and images,
+ * and the frame has no background. sums has rows from the top down, with stride_bytes from one row to the next; 0 means
+ * width * 4. It is written in place as by camber_renderer_render_into. Returns the errors of camber_renderer_render,
+ * and CAMBER_ERROR_ARGUMENT (a frame with anything else, or a renderer that draws in GL). */
+CAMBER_API camber_status camber_renderer_sum(camber_renderer *renderer, const camber_frame *frame, float *sums,
+                                             size_t stride_bytes, camber_frame_stats *stats);
 
 /* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
 

@@ -10,6 +10,25 @@
 extern "C" {
 #endif
 
+/* Computes how important each point of a set of polylines is, for camber_network_desc.importance. importance[i] is the
+ * largest tolerance, in the points' unit, that keeps point i: a tolerance T keeps the points whose importance is T or
+ * more, and T = 0 keeps all. A polyline's ends have INFINITY. A ring (first point == last point) keeps its seam, and
+ * three distinct points if it has an area.
+ *
+ * Without shared nodes a tolerance T keeps the points that the Douglas-Peucker method keeps: the original is within T
+ * of the simplified polyline, and vice versa. A node is a set of points whose coordinates are equal, bit for bit. All
+ * of them get the largest of their importances, so that a node is kept everywhere or nowhere. Points kept for that
+ * reason can raise the distance to 2 T.
+ *
+ * points are pairs of coordinates, which should be finite. Polyline i has the points [offsets[i], offsets[i + 1]), so
+ * offsets has polyline_count + 1 entries. They ascend, and are indices into points and importance, whose entries before
+ * the first offset are left alone.
+ * Returns CAMBER_ERROR_INPUT (offsets that do not ascend), CAMBER_ERROR_LIMIT (2^31 points or more),
+ * CAMBER_ERROR_MEMORY.
+ * Cost: O(n log n), in the worst case too. */
+CAMBER_API camber_status camber_importance_weigh(camber_context *context, const double *points, const size_t *offsets,
+                                                 size_t polyline_count, float *importance);
+
 /* One drawing of a polyline of a network. Entries are in drawing order. */
 typedef struct camber_network_entry {
     uint32_t polyline;
@@ -25,8 +44,9 @@ typedef struct camber_network_desc {
     const double *points;  /* pairs of x, y in any plane, y down, in world units */
     const size_t *offsets; /* polyline i has the points [offsets[i], offsets[i + 1]) */
     size_t polyline_count;
-    /* For each point the largest tolerance, in world units, at which it is kept (camber_camera.simplify_px). The ends
-     * of a polyline are always kept. NULL: all points are kept. */
+    /* For each point the largest tolerance, in world units, at which it is kept (camber_camera.simplify_px), as
+     * camber_importance_weigh computes it. The ends of a polyline are always kept. NULL: unknown, so that cameras
+     * cannot simplify. */
     const float *importance;
     const camber_network_entry *entries; /* entry_count of them. NULL: each polyline once, with row 0 */
     size_t entry_count;
@@ -71,8 +91,8 @@ typedef struct camber_camera {
     double scale_px;        /* px per world unit, above 0 */
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
     uint32_t width, height; /* size of the picture, px */
-    /* The simplification tolerance, 0 or more px: points whose camber_network_desc.importance is smaller are left out.
-     * 0: no points are left out. */
+    /* The simplification tolerance, 0 or more px: points whose camber_network_desc.importance is smaller are left out,
+     * so a network that is simplified must have it. 0: no points are left out. */
     double simplify_px;
     /* The largest distance by which any paint of the mesh will translate lines, 0 or more px
      * (camber_paint.translate_x_px). Lines that such a translation moves into the picture are then kept as well. */
@@ -86,7 +106,8 @@ typedef struct camber_camera {
  * no vertices are far away. The mesh keeps the network on the device: another call uploads nothing. The same camera
  * gives the same bytes.
  * Returns the errors of camber_mesh_tessellate, and CAMBER_ERROR_ARGUMENT (a camera that is not finite, a scale or a
- * size of 0, a size above 65535, or a scale at which a step is more than 10^9 px).
+ * size of 0, a size above 65535, a scale at which a step is more than 10^9 px, or a tolerance above 0 for a network
+ * without importance).
  * network may be from another context than the mesh, but all networks of one mesh must be from the same context,
  * because the mesh identifies them by the numbers that the context gives them. One thread must own both contexts during
  * the call.

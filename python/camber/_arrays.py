@@ -1,8 +1,8 @@
-"""Arrays over the library's memory, types of its structs, and colours."""
+"""Arrays over the library's memory, and types of its structs."""
 
 import numpy
 
-from ._core import ArgumentError, ffi
+from ._core import ffi
 
 KINDS = {"float": "f4", "double": "f8", "int16_t": "i2", "uint16_t": "u2", "int32_t": "i4", "uint32_t": "u4",
          "uint8_t": "u1", "size_t": "u8"}
@@ -29,48 +29,3 @@ def view(pointer, name, count, owner):
     dtype = numpy.dtype(name)
     kept = ffi.gc(ffi.cast("char *", pointer), lambda _, owner=owner: None)
     return numpy.frombuffer(ffi.buffer(kept, count * dtype.itemsize), dtype)
-
-
-# ---- Colours and styles ----
-
-
-def parse_color(color):
-    """Parses "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", or three or four numbers from 0 to 1; returns four floats from 0
-    to 1."""
-    if isinstance(color, str):
-        digits = color[1:]
-        if len(digits) in (3, 4):
-            digits = "".join(digit * 2 for digit in digits)
-        try:
-            if color[:1] == "#" and len(digits) in (6, 8) and digits.isalnum():
-                return tuple(byte / 255 for byte in bytes.fromhex(digits)) + (1.0,) * (len(digits) == 6)
-        except ValueError:
-            pass
-    else:
-        try:
-            values = tuple(float(value) for value in color)
-        except (TypeError, ValueError):
-            values = ()
-        if len(values) in (3, 4) and all(0 <= value <= 1 for value in values):
-            return values + (1.0,) * (len(values) == 3)
-    raise ArgumentError("%r is not a colour; give \"#rgb\", \"#rrggbb\", either followed by alpha, or three or four "
-                        "numbers from 0 to 1" % (color,))
-
-
-def as_colors(color):
-    """Returns n x 4 floats, and whether several colours were given: an array, or a list of values for parse_color."""
-    if isinstance(color, str) or (numpy.ndim(color) == 1 and len(color) and not isinstance(color[0], str)):
-        return numpy.array([parse_color(color)], numpy.float32), False
-    array = numpy.asarray(color)
-    if array.size == 0:
-        return numpy.zeros((0, 4), numpy.float32), True
-    if array.dtype == numpy.uint8:
-        array = array / numpy.float32(255)
-    if array.dtype.kind != "f":
-        return numpy.array([parse_color(each) for each in color], numpy.float32).reshape(-1, 4), True
-    if array.ndim != 2 or array.shape[1] not in (3, 4) or not ((array >= 0) & (array <= 1)).all():
-        raise ArgumentError("colours have the shape %s; give n x 3 or n x 4, numbers from 0 to 1 or bytes"
-                            % (array.shape,))
-    colors = numpy.ones((len(array), 4), numpy.float32)
-    colors[:, :array.shape[1]] = array
-    return colors, True

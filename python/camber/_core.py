@@ -250,7 +250,7 @@ class Context:
         self._match = as_text(device or None)
         self._desc.match = self._match
         self._rasterizer = rasterizer
-        self._opened = None
+        self._opened = self._summing = None
         self._fonts = {}  # by their folders
 
     def _open(self, core):
@@ -269,6 +269,17 @@ class Context:
         self._opened = (device, renderer, mesh)
         self._surface = surface
         return self._opened
+
+    def _open_summing(self, core):
+        """Returns (device, renderer, mesh) like _open, for sums, which only OpenCL draws."""
+        if self._summing is None:
+            self._summing = self._open(core)
+            device, renderer, _ = self._summing
+            if lib.camber_renderer_get_rasterizer(renderer) != lib.CAMBER_RASTERIZER_OPENCL:
+                desc = ffi.new("camber_renderer_desc *", {"rasterizer": lib.CAMBER_RASTERIZER_OPENCL})
+                renderer = core.make(lib.camber_renderer_create, device, ffi.NULL, desc)
+                self._summing = device, renderer, core.make(lib.camber_mesh_create, device, renderer)
+        return self._summing
 
     @property
     def device(self):

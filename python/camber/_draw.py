@@ -2,12 +2,14 @@
 
 import collections
 import operator
+import warnings
 
 import numpy
 
-from ._arrays import as_colors, dtype_of, parse_color, view
+from ._arrays import dtype_of, view
+from ._colors import NAMES, as_colors, parse_color
 from ._core import ArgumentError, check_memory, default, lib, ffi, pick
-from ._lines import as_lines, as_whole
+from ._lines import as_lines, as_whole, columns_of
 from ._text import add_passes, as_texts
 
 JOINS = {"round": lib.CAMBER_JOIN_ROUND, "miter": lib.CAMBER_JOIN_MITER, "bevel": lib.CAMBER_JOIN_BEVEL}
@@ -33,6 +35,21 @@ def as_rows(rows, lines):
     return rows if lines.origins is None else rows[lines.origins]
 
 
+STYLE = ("width", "color", "rows", "size", "background", "join", "cap", "miter_limit", "offset", "gap", "blur", "dash",
+         "overlap", "opacity", "pitch")
+
+
+def explain_unknown(name):
+    """Says what to give instead of an argument that there is not."""
+    if name in ("column", "cmap", "legend", "vmin", "vmax"):
+        return "%s= colours lines by a column; camber.plot(data, column=...) does that" % name
+    if name in ("crs", "bbox"):
+        return "%s= is for data with a CRS; camber.plot(data, ...) projects it, and here lines are in pixels" % name
+    near = {"linewidth": "width", "lw": "width", "colors": "color", "colour": "color", "alpha": "opacity",
+            "figsize": "size", "linestyle": "dash"}.get(name)
+    return "there is no argument %r; %s" % (name, "give %s=" % near if near else "styles have %s" % ", ".join(STYLE))
+
+
 class Table:
     """Strokes and paints by row, and the row of each line, in the form that the library needs.
 
@@ -40,7 +57,9 @@ class Table:
     """
 
     def __init__(self, width, color, rows, lines, *, join="round", cap="butt", miter_limit=0, offset=0, gap=0, blur=0,
-                 dash=None):
+                 dash=None, **unknown):
+        if unknown:
+            raise TypeError(explain_unknown(next(iter(unknown))))
         if not (0 <= gap < float("inf") and 0 <= blur < float("inf")):
             raise ArgumentError("gap is %r and blur %r; give 0 or more pixels" % (gap, blur))
         colors, has_colors = as_colors(color)
@@ -59,6 +78,9 @@ class Table:
                                 % (" and ".join(map(str, sorted(counts))),
                                    "%d lines; give one for each, or rows" % wanted if wanted is not None
                                    else "both are chosen by row; give the same number of each"))
+        if not counts and rows is not None and len(rows):  # one width and colour for all rows
+            counts = {int(rows.max()) + 1}
+            colors = numpy.broadcast_to(colors, (max(counts), 4))
         self.count = counts.pop() if counts else 1
         self.rows = rows
         if rows is not None and len(rows) and int(rows.max()) >= self.count:
@@ -92,6 +114,30 @@ class Table:
 
 
 # ---- Pictures ----
+
+
+def warn_outside(lines, given, widths, size):
+    """Warns if no line can be in the picture, or if all of them are in one pixel."""
+    if not len(lines.points):
+        return
+    x, y = lines.points[:, 0], lines.points[:, 1]
+    low, high = (x.min(), y.min()), (x.max(), y.max())
+    if not numpy.isfinite((low, high)).all():
+        return
+    reach = float(numpy.max(widths, initial=0)) + 1
+    told = "camber.plot(...) fits lines into a picture, and here they are in pixels, with y down"
+    if any(high[i] < -reach or low[i] > size[i] + reach for i in (0, 1)):
+        warnings.warn("the picture is empty: the lines are at %g, %g to %g, %g, and it is %d x %d px; %s"
+                      % (*low, *high, *size, told), stacklevel=3)
+    elif hasattr(given, "crs") and high[0] - low[0] < 2 and high[1] - low[1] < 2:
+        warnings.warn("all lines are in %g x %g px; %s" % (high[0] - low[0], high[1] - low[1], told), stacklevel=3)
+
+
+def refuse_column(points, color):
+    """Refuses a colour that is the name of a column."""
+    if isinstance(color, str) and color in columns_of(points) and color not in NAMES:
+        raise ArgumentError("color=%r is a column of the data; camber.plot(data, column=%r) colours lines by it"
+                            % (color, color))
 
 
 def as_size(size):
@@ -163,9 +209,11 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
          context=None, **style):
     """Draws lines in pixels, and texts over them; returns a uint8 array of height x width x 4."""
     context, texts = default(context), as_texts(texts)
+    refuse_column(points, color)
     lines = as_lines(points, offsets, numpy.float32, numpy.uint32)
     table = Table(width, color, as_rows(rows, lines), lines, **style)
     size = as_size(size)
+    warn_outside(lines, points, table.strokes["width_px"] + abs(table.strokes["offset_px"]), size)
     with context._core as core:
         _, renderer, mesh = context._open(core)
         polylines = make_polylines(core, lines, table.rows, keep_open)
@@ -175,6 +223,43 @@ def draw(points, offsets=None, *, width=8, color="#336", size=(1024, 1024), rows
         picture = render_frame(core, renderer, frame, out, premultiplied)
         del kept  # the frame refers to it
         return picture
+
+
+def as_sums(width, height):
+    """Returns an array of floats that kernels can write to directly, one per pixel."""
+    return as_output(None, width, height).reshape(height, width * 4).view(numpy.float32)
+
+
+def sum_lines(lines, *, width, weights, size, context, camera=None, **style):
+    """Returns how many origins of lines cover each pixel, each times its weight; lines are in pixels, or, with a camera
+    (x, y, scale), in its units."""
+    if lines.origins is None:
+        rows = numpy.arange(len(lines), dtype=numpy.uint32)
+    else:
+        rows = lines.origins.astype(numpy.uint32)
+    table = Table(width, "#000", rows, None, **style)
+    if weights is not None and len(rows):
+        table.paints["color"]["r"] = weights[:len(table.paints)]
+    else:
+        table.paints["color"]["r"] = 1
+    sums = as_sums(*size)
+    with context._core as core:
+        _, renderer, mesh = context._open_summing(core)
+        if camera is None:
+            polylines = make_polylines(core, lines, rows, False)
+            core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation()))
+        else:
+            desc, kept = describe_network(lines, rows)
+            desc.step = 1 / (4096 * camera[2])  # so that a line's points do not depend on the other lines
+            network = core.make(lib.camber_network_create, core.pointer, desc)
+            view = ffi.new("camber_camera *", {"x": camera[0], "y": camera[1], "scale_px": camera[2], "width": size[0],
+                                               "height": size[1]})
+            core.check(lib.camber_mesh_tessellate_network(mesh, network, view, table.tessellation()))
+            del kept
+        frame, passes = frame_of(table, mesh, size, None, "flatten", 1)
+        core.check(lib.camber_renderer_sum(renderer, frame, ffi.from_buffer("float[]", sums), sums.strides[0], ffi.NULL))
+        del passes
+    return sums
 
 
 Mesh = collections.namedtuple("Mesh", "method strips records vertices indices")
@@ -200,23 +285,43 @@ def tessellate(points, offsets=None, *, width=8, rows=None, method="strip", fan_
                 view(data.indices, "u4", info.index_count, owner))
 
 
+def importance(points, offsets=None, *, context=None):
+    """Returns the importance of each point of lines, as Network takes it: the largest tolerance that keeps the point."""
+    lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
+    made = numpy.empty(len(lines.points), numpy.float32)
+    with default(context)._core as core:
+        core.check(lib.camber_importance_weigh(
+            core.pointer, ffi.from_buffer("double[]", lines.points),
+            ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)), len(lines),
+            ffi.from_buffer("float[]", made)))
+    return made
+
+
+def describe_network(lines, rows):
+    """Returns a description of a network, and what it refers to."""
+    entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
+    entries["polyline"] = numpy.arange(len(lines))
+    entries["row"] = 0 if rows is None else rows
+    kept = [ffi.from_buffer("double[]", lines.points), ffi.from_buffer("uint64_t[]", lines.offsets),
+            ffi.from_buffer("camber_network_entry[]", entries)]
+    return ffi.new("camber_network_desc *", {
+        "points": kept[0], "offsets": ffi.cast("size_t *", kept[1]), "polyline_count": len(lines), "entries": kept[2],
+        "entry_count": len(entries)}), kept
+
+
 class Network:
     """Lines in world units, which stay on the device while a camera moves over them. y points down."""
+
+    _warns = True  # of empty pictures
 
     def __init__(self, points, offsets=None, *, rows=None, importance=None, keep_open=False, dashed=False,
                  context=None):
         self._context = default(context)
         lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
         self._rows = as_rows(rows, lines)
-        entries = numpy.zeros(len(lines), dtype_of("camber_network_entry"))
-        entries["polyline"] = numpy.arange(len(lines))
-        entries["row"] = 0 if rows is None else self._rows
-        desc = ffi.new("camber_network_desc *", {
-            "points": ffi.from_buffer("double[]", lines.points),
-            "offsets": ffi.cast("size_t *", ffi.from_buffer("uint64_t[]", lines.offsets)),
-            "polyline_count": len(lines), "entries": ffi.from_buffer("camber_network_entry[]", entries),
-            "entry_count": len(entries), "keep_open": keep_open, "has_arc_length": dashed})
-        self._dashed = dashed
+        desc, kept = describe_network(lines, self._rows)
+        desc.keep_open, desc.has_arc_length = keep_open, dashed
+        self._dashed, self._has_importance = dashed, importance is not None or not len(lines)
         if importance is not None:
             importance = numpy.require(importance, numpy.float32, "CA")
             if importance.shape != (len(lines.points),):
@@ -224,6 +329,7 @@ class Network:
                                     % (importance.shape, len(lines.points)))
             desc.importance = ffi.from_buffer("float[]", importance)
         finite = lines.points[numpy.isfinite(lines.points).all(axis=1)]
+        self._has_points = len(finite) > 0
         self.bounds = tuple(finite.min(axis=0)) + tuple(finite.max(axis=0)) if len(finite) else (0.0, 0.0, 1.0, 1.0)
         with self._context._core as core:
             device, renderer, _ = self._context._open(core)
@@ -239,6 +345,14 @@ class Network:
             scale = 0.96 * min(sides, default=1.0)
         return float(center[0]), float(center[1]), float(scale)
 
+    def _warn_outside(self, x, y, scale, width, size):
+        """Warns if the camera looks past the lines, however it is turned."""
+        west, north, east, south = self.bounds
+        away = numpy.hypot(max(west - x, x - east, 0), max(north - y, y - south, 0)) * scale
+        if self._has_points and numpy.isfinite(away) and away > numpy.hypot(*size) + width:
+            warnings.warn("the picture is empty: it shows %g, %g, and the lines are at %g, %g to %g, %g"
+                          % (x, y, *self.bounds), stacklevel=3)
+
     def draw(self, *, center=None, scale=None, bearing=0, pitch=0, simplify=0, width=8, color="#336",
              size=(1024, 1024), background=None, overlap="flatten", opacity=1, premultiplied=False, out=None, **style):
         """Draws what a camera sees. scale is in pixels per world unit; without center and scale everything is shown."""
@@ -246,7 +360,12 @@ class Network:
         table = Table(width, color, self._rows, None, **style)
         if table.dash is not None and not self._dashed:
             raise ArgumentError("dashes need a network that was made with dashed=True")
+        if simplify and not self._has_importance:
+            raise ArgumentError("simplify=%r needs the importance of each point; make the network with "
+                                "importance=camber.importance(points, offsets)" % simplify)
         x, y, scale = self._camera(center, scale, size)
+        if self._warns:
+            self._warn_outside(x, y, scale, numpy.max(table.strokes["width_px"]), size)
         camera = ffi.new("camber_camera *", {
             "x": x, "y": y, "scale_px": scale, "bearing_deg": bearing, "width": size[0], "height": size[1],
             "simplify_px": simplify, "pitch_deg": pitch})
@@ -257,8 +376,8 @@ class Network:
             return render_frame(core, renderer, frame, out, premultiplied)
 
 
-def encode(picture, format="png", *, quality=None, premultiplied=False, context=None):
-    """Returns a picture encoded as PNG or WebP, as bytes."""
+def encode(picture, format="png", *, quality=None, premultiplied=False, dpi=0, context=None):
+    """Returns a picture encoded as PNG or WebP, as bytes. dpi: what a PNG says of its size on paper."""
     picture = numpy.asarray(picture)
     if picture.dtype != numpy.uint8 or picture.ndim != 3 or picture.shape[2] != 4 or not picture.size:
         raise ArgumentError("the picture has the type %s and the shape %s; give uint8, height x width x 4"
@@ -266,7 +385,8 @@ def encode(picture, format="png", *, quality=None, premultiplied=False, context=
     picture = numpy.ascontiguousarray(picture)
     height, width = picture.shape[:2]
     pixels = ffi.from_buffer("uint8_t[]", picture)
-    desc = ffi.new("camber_encoder_desc *", {"encoding": pick(ENCODINGS, "format", format), "quality": quality or 0})
+    desc = ffi.new("camber_encoder_desc *", {"encoding": pick(ENCODINGS, "format", format), "quality": quality or 0,
+                                           "dpi": dpi})
     with default(context)._core as core:
         encoder = core.make(lib.camber_encoder_create, core.pointer, desc)
         if not premultiplied:

@@ -1,6 +1,9 @@
 """Converts lines from arrays, lists of arrays, GeoArrow, Shapely and GeoPandas into points and offsets."""
 
 import ctypes
+import importlib
+import json
+import struct
 
 import numpy
 
@@ -10,11 +13,11 @@ from ._library import ffi
 class Lines:
     """Points (n x 2), offsets (lines + 1), and the index of each line's origin; None: each line is its own origin.
 
-    origin_count is the number of origins, including those without a line.
+    origin_count is the number of origins, including those without a line. crs is what GeoArrow says of its CRS, or None.
     """
 
-    def __init__(self, points, offsets, origins=None, origin_count=None):
-        self.points, self.offsets, self.origins = points, offsets, origins
+    def __init__(self, points, offsets, origins=None, origin_count=None, crs=None):
+        self.points, self.offsets, self.origins, self.crs = points, offsets, origins, crs
         self._origin_count = origin_count
 
     def __len__(self):
@@ -53,8 +56,16 @@ def as_whole(values, dtype, what):
     return numpy.require(array, dtype, "CA")
 
 
-def as_lines(points, offsets, dtype, offset_dtype):
-    """Converts any supported value to Lines of these types."""
+def is_pair(value):
+    """Whether this is a tuple of points and offsets, as Map.lines() and tracks() return it."""
+    return isinstance(value, tuple) and len(value) == 2 and all(isinstance(each, numpy.ndarray) for each in value) and \
+        (value[0].ndim, value[1].ndim) == (2, 1) and value[1].dtype.kind in "iu"
+
+
+def as_lines(points, offsets, dtype, offset_dtype, dots=False):
+    """Converts any supported value to Lines of these types. dots: points of Shapely are lines of one point."""
+    if offsets is None and is_pair(points):
+        points, offsets = points
     if isinstance(points, Lines):
         lines = points
     elif offsets is not None:
@@ -62,11 +73,11 @@ def as_lines(points, offsets, dtype, offset_dtype):
     elif hasattr(points, "__arrow_c_array__"):
         lines = from_arrow(points)
     elif hasattr(points, "geom_type") or hasattr(points, "geometry"):
-        lines = from_geometries(points)
+        lines = from_geometries(points, dots)
     elif hasattr(points, "__arrow_c_stream__"):
         lines = from_arrow_stream(points)
     elif isinstance(points, (list, tuple)) or getattr(points, "dtype", None) == object:
-        lines = from_list(points)
+        lines = from_list(points, dots)
     else:  # one line
         points = numpy.asarray(points)
         lines = Lines(points, [0, len(points) if points.ndim else 0])
@@ -76,7 +87,37 @@ def as_lines(points, offsets, dtype, offset_dtype):
     if int(offsets[-1]) != len(points) or offsets[0] != 0 or (len(offsets) > 1 and (offsets[1:] < offsets[:-1]).any()):
         raise ValueError("offsets go from %d to %d, and must ascend from 0 to %d, the number of points"
                          % (offsets[0], offsets[-1], len(points)))
-    return Lines(points, offsets, lines.origins, lines._origin_count)
+    return Lines(points, offsets, lines.origins, lines._origin_count, lines.crs)
+
+
+def columns_of(data):
+    """Returns the names of a table's columns: pandas', polars' or pyarrow's. Empty: this is no table."""
+    names = getattr(data, "column_names", None)  # pyarrow
+    names = getattr(data, "columns", ()) if names is None else names
+    return [str(name) for name in names] if not callable(names) else []
+
+
+def to_array(column):
+    return column.to_numpy() if hasattr(column, "to_numpy") else numpy.asarray(column)
+
+
+def tracks(table, x="x", y="y", by=None):
+    """Makes lines from a table of points, in their order: returns points and offsets, in a tuple that draw(), plot() and
+    density() take. x, y: the names of columns. by: the column that says which line a point belongs to; None: one line.
+    Lines come in the order of their keys, unless the points of each line are together."""
+    missing = [name for name in (x, y, by) if name is not None and name not in columns_of(table)]
+    if missing:
+        raise ValueError("there is no column %r; the table has %s" % (missing[0], ", ".join(map(repr, columns_of(table)))))
+    points = numpy.stack([to_array(table[name]).astype(numpy.float64) for name in (x, y)], axis=1)
+    if by is None or not len(points):
+        return points, numpy.array([0, len(points)])
+    keys = to_array(table[by])
+    starts = numpy.concatenate([[0], numpy.flatnonzero(keys[1:] != keys[:-1]) + 1])
+    if len(numpy.unique(keys[starts])) < len(starts):
+        order = numpy.argsort(keys, kind="stable")
+        points, keys = points[order], keys[order]
+        starts = numpy.concatenate([[0], numpy.flatnonzero(keys[1:] != keys[:-1]) + 1])
+    return points, numpy.append(starts, len(points))
 
 
 def join(arrays, origins=None, origin_count=None):
@@ -87,10 +128,10 @@ def join(arrays, origins=None, origin_count=None):
     return Lines(points, offsets, origins, origin_count)
 
 
-def from_list(items):
+def from_list(items, dots=False):
     """Converts a list of arrays of points, or of geometries. A list of pairs of numbers is one line."""
     if len(items) and (hasattr(items[0], "geom_type") or items[0] is None):
-        return from_geometries(items)
+        return from_geometries(items, dots)
     if len(items) and all(numpy.ndim(item) == 1 and len(item) == 2 for item in items):
         return Lines(numpy.asarray(items), [0, len(items)])
     return join([as_points(item, numpy.float64) for item in items])
@@ -98,33 +139,92 @@ def from_list(items):
 
 # ---- Shapely and GeoPandas ----
 
+POINT, LINE, RING, POLYGON, LAST_SIMPLE = 0, 1, 2, 3, 3  # Shapely's numbers of types; those above are collections
 
-def parts_of(geometry):
+
+def parts_of(geometry, dots):
     """Returns the lines of a geometry as arrays of points: the parts of a collection, and the rings of polygons."""
     kind = None if geometry is None else geometry.geom_type
-    if kind in ("LineString", "LinearRing"):
+    if kind in ("LineString", "LinearRing") or (kind == "Point" and dots and not geometry.is_empty):
         points = numpy.asarray(geometry.coords, dtype=numpy.float64)
         yield points[:, :2] if len(points) else points.reshape(0, 2)
     elif kind == "Polygon":
         for ring in [geometry.exterior, *geometry.interiors] if not geometry.is_empty else []:
-            yield from parts_of(ring)
+            yield from parts_of(ring, dots)
     elif hasattr(geometry, "geoms"):
         for part in geometry.geoms:
-            yield from parts_of(part)
+            yield from parts_of(part, dots)
 
 
-def from_geometries(geometries):
-    """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame."""
+def from_each(geometries, dots):
+    """Converts geometries one by one, for Shapely 1."""
+    arrays, origins = [], []
+    for number, geometry in enumerate(geometries):
+        for part in parts_of(geometry, dots):
+            arrays.append(part)
+            origins.append(number)
+    return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
+
+
+def from_linestrings(geometries):
+    """Converts linestrings by their WKB, which is twice as fast in Shapely 1. None: there is something else among them."""
+    if not len(geometries) or any(type(each).__name__ != "LineString" for each in geometries):
+        return None
+    geos = importlib.import_module("shapely.geos")
+    writer = geos.WKBWriter(geos.lgeos)
+    pieces = [writer.write(each) for each in geometries]
+    sizes = numpy.fromiter(map(len, pieces), numpy.int64, len(pieces))
+    data = numpy.frombuffer(b"".join(pieces), numpy.uint8)
+    heads = (numpy.cumsum(sizes) - sizes)[:, None] + numpy.arange(9)  # order of bytes, type, number of points
+    if (data[heads[:, :5]] != (1, 2, 0, 0, 0)).any():
+        return None  # 3-D, or of another order
+    is_point = numpy.ones(len(data), bool)
+    is_point[heads] = False
+    offsets = numpy.concatenate([[0], numpy.cumsum((sizes - 9) // 16)])
+    return Lines(data[is_point].view("<f8").reshape(-1, 2), offsets, numpy.arange(len(pieces)), len(pieces))
+
+
+def from_all(shapely, geometries, dots):
+    """Converts geometries by calls of Shapely 2 that take all of them at once."""
+    count, origins = len(geometries), numpy.arange(len(geometries))
+    kinds = shapely.get_type_id(geometries)
+    while (kinds > LAST_SIMPLE).any():  # collections may be nested
+        geometries, index = shapely.get_parts(geometries, return_index=True)
+        origins, kinds = origins[index], shapely.get_type_id(geometries)
+    if (kinds == POLYGON).any():
+        rest = kinds != POLYGON
+        rings, index = shapely.get_rings(geometries[~rest], return_index=True)
+        order = numpy.argsort(numpy.concatenate([numpy.flatnonzero(rest), numpy.flatnonzero(~rest)[index]]), kind="stable")
+        origins = numpy.concatenate([origins[rest], origins[~rest][index]])[order]
+        geometries = numpy.concatenate([geometries[rest], rings])[order]
+        kinds = shapely.get_type_id(geometries)
+    counts = shapely.get_num_coordinates(geometries)
+    taken = (kinds == LINE) | (kinds == RING) | ((kinds == POINT) & (counts > 0) & dots)
+    if not taken.all():
+        geometries, origins, counts = geometries[taken], origins[taken], counts[taken]
+    offsets = numpy.concatenate([[0], numpy.cumsum(counts)])
+    return Lines(shapely.get_coordinates(geometries), offsets, origins, count)
+
+
+def from_geometries(geometries, dots=False):
+    """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame. dots: points are
+    lines of one point."""
     if hasattr(geometries, "geom_type") and isinstance(geometries.geom_type, str):
         geometries = [geometries]
     else:
         geometries = getattr(geometries, "geometry", geometries)
-    arrays, origins = [], []
-    for number, geometry in enumerate(geometries):
-        for part in parts_of(geometry):
-            arrays.append(part)
-            origins.append(number)
-    return join(arrays, numpy.asarray(origins, numpy.int64), len(geometries))
+    try:
+        shapely = importlib.import_module("shapely")
+        if not hasattr(shapely, "get_parts"):
+            geometries = numpy.asarray(geometries) if hasattr(geometries, "values") else geometries
+            return from_linestrings(geometries) or from_each(geometries, dots)
+        array = numpy.empty(len(geometries), object)
+        array[:] = geometries
+        if not (shapely.is_geometry(array) | shapely.is_missing(array)).all():
+            return from_each(geometries, dots)
+    except ImportError:
+        return from_each(geometries, dots)
+    return from_all(shapely, array, dots)
 
 
 # ---- GeoArrow, through Arrow's C data interface ----
@@ -138,6 +238,41 @@ WANTED = "give GeoArrow's linestring or multilinestring (GeoPandas: to_arrow(geo
 
 def _format(schema):
     return ffi.string(schema.format).decode()
+
+
+def _is_lines(schema):
+    """Whether a column may be lines: a list, or a list of lists, of points."""
+    for _ in range(2):
+        if _format(schema) not in ("+l", "+L") or schema.n_children != 1:
+            return False
+        schema = schema.children[0]
+        if _format(schema) == "+s" or _format(schema).startswith("+w:"):
+            return True
+    return False
+
+
+def _metadata(schema):
+    """Returns the metadata of a column: pairs of texts with their lengths before them."""
+    found, at = {}, 4
+    if schema.metadata == ffi.NULL:
+        return found
+    number = lambda place: struct.unpack("=i", ffi.buffer(schema.metadata + place, 4))[0]  # noqa: E731
+    for _ in range(number(0)):
+        pair = []
+        for _ in range(2):
+            size = number(at)
+            pair.append(bytes(ffi.buffer(schema.metadata + at + 4, size)))
+            at += 4 + size
+        found[pair[0]] = pair[1]
+    return found
+
+
+def _crs_of(schema):
+    """Returns what GeoArrow's metadata says of the CRS, or None."""
+    try:
+        return json.loads(_metadata(schema)[b"ARROW:extension:metadata"]).get("crs")
+    except (KeyError, ValueError, AttributeError):
+        return None
 
 
 class _Arrow:
@@ -197,10 +332,19 @@ class _Arrow:
         return numpy.unpackbits(bits, bitorder="little")[first:first + count].astype(bool)
 
     def lines(self, schema, array):
-        """Converts linestrings and multilinestrings."""
-        count, origins = array.length, None
-        offsets = self.list(schema, array, 0, count, "points")
-        is_valid = self.is_valid(array, 0, count)
+        """Converts linestrings and multilinestrings, or the first column of a table that has some."""
+        if _format(schema) == "+s":
+            for i in range(schema.n_children):
+                if _is_lines(schema.children[i]):
+                    return self.column(schema.children[i], array.children[i], array.offset, array.length)
+            raise TypeError("the table has no column of lines; %s, or camber.tracks(table, x, y, by)" % WANTED)
+        return self.column(schema, array, 0, array.length)
+
+    def column(self, schema, array, start, length):
+        """Converts entries [start, start + length) of a column of lines."""
+        count, origins = length, None
+        offsets = self.list(schema, array, start, count, "points")
+        is_valid = self.is_valid(array, start, count)
         inner_schema, inner = schema.children[0], array.children[0]
         if _format(inner_schema) in ("+l", "+L"):
             origins = numpy.repeat(numpy.arange(count), numpy.diff(offsets))
@@ -216,7 +360,7 @@ class _Arrow:
         if is_valid is not None and not numpy.all(is_valid):  # a missing line has no points
             points = points[numpy.repeat(is_valid, numpy.diff(offsets))]
             offsets = numpy.concatenate([[0], numpy.cumsum(numpy.diff(offsets) * is_valid)])
-        return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins, array.length)
+        return Lines(points, offsets if count else numpy.zeros(1, numpy.int64), origins, length, _crs_of(schema))
 
 
 def _struct(capsule, kind, name):
@@ -267,4 +411,4 @@ def from_arrow_stream(value):
     origins = None
     if pieces and pieces[0].origins is not None:
         origins = numpy.concatenate([piece.origins + first for piece, first in zip(pieces, firsts)])
-    return Lines(lines.points, offsets.astype(numpy.int64), origins, int(firsts[-1]))
+    return Lines(lines.points, offsets.astype(numpy.int64), origins, int(firsts[-1]), pieces[0].crs if pieces else None)

@@ -1,15 +1,24 @@
-"""Maps: files drawn with a style, into arrays or archives of tiles."""
+"""Maps: files drawn with a style, into arrays, pages or archives of tiles."""
 
+import importlib
 import json
 import os
+import re
+import tempfile
+import warnings
 
 import numpy
 
-from ._core import ArgumentError, NotFoundError, as_path, as_text, default, ffi, lib, pick, text_of
-from ._draw import ENCODINGS, METHODS, as_size, render_frame
+from ._core import ArgumentError, FileError, NotFoundError, as_path, as_text, default, ffi, lib, pick, text_of
+from ._draw import ENCODINGS, METHODS, TAKE_ROWS, as_output, as_size, encode, render_frame
 
 THEMES = {"light": lib.CAMBER_THEME_LIGHT, "dark": lib.CAMBER_THEME_DARK}
 SIMPLIFY_PX = 0.1  # as in camber render
+PAGES = {".pdf": lib.CAMBER_PAGE_PDF, ".svg": lib.CAMBER_PAGE_SVG}
+PICTURES = {".png": "png", ".webp": "webp"}
+FITS = {"contain": False, "cover": True}
+MARGIN_SHARE, PRINTED_DPI = 0.04, 300  # as in camber render
+WRITE = ffi.addressof(lib, "camber_python_write")
 
 
 def styles():
@@ -56,6 +65,24 @@ def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
     return view
 
 
+def as_paper(paper, size, landscape):
+    """Returns the width and height of a sheet in mm: by its name, by millimetres, or of a picture of a size in CSS px."""
+    if paper is None and size is not None:
+        width, height = (25.4 / 96 * side for side in as_size(size))
+    elif paper is None or isinstance(paper, str):
+        found = ffi.new("double[2]")
+        if not lib.camber_paper_find(as_text("A4" if paper is None else paper), found, found + 1):
+            raise ArgumentError("paper is %r; give A0 to A6, B0 to B6, Letter, Legal, Tabloid, or width and height in mm"
+                                % paper)
+        width, height = found
+    else:
+        try:
+            width, height = map(float, paper)
+        except (TypeError, ValueError):
+            raise ArgumentError("paper is %r; give a name like \"A4\", or width and height in mm" % (paper,)) from None
+    return (height, width) if landscape and width < height else (width, height)
+
+
 def translate(core, text, name, language):
     """Returns a style document that prefers names in a language."""
     made = ffi.new("char **")
@@ -66,8 +93,40 @@ def translate(core, text, name, language):
         lib.camber_style_free_text(core.pointer, made[0])
 
 
+def as_json(value):
+    """Makes a value of a column fit for JSON: numpy's numbers, dates; None if it is missing."""
+    if value is None or value != value:
+        return None
+    return value.item() if isinstance(value, numpy.generic) and value.dtype.kind in "biuf" else str(value)
+
+
+def find_geojson(geometries):
+    """Returns each geometry as GeoJSON."""
+    try:
+        return importlib.import_module("shapely").to_geojson(numpy.asarray(geometries, dtype=object))
+    except (ImportError, AttributeError):  # Shapely 1
+        return [None if each is None else json.dumps(each.__geo_interface__) for each in geometries]
+
+
+def write_frame(frame, file):
+    """Writes a GeoDataFrame or a GeoSeries as GeoJSON."""
+    crs = getattr(frame, "crs", None)
+    if crs is None:
+        raise ArgumentError("the data does not say its CRS; tell it first, as in data.set_crs(\"EPSG:4326\")")
+    if not (crs.is_geographic and crs.to_epsg() == 4326):
+        frame = frame.to_crs(4326)
+    names = [name for name in getattr(frame, "columns", ()) if name != frame.geometry.name]
+    columns = [frame[name].tolist() for name in names]
+    file.write('{"type":"FeatureCollection","features":[\n')
+    for i, geometry in enumerate(find_geojson(frame.geometry.values)):
+        properties = {str(name): as_json(column[i]) for name, column in zip(names, columns)}
+        file.write('%s{"type":"Feature","properties":%s,"geometry":%s}\n'
+                   % ("," if i else "", json.dumps(properties), geometry or "null"))
+    file.write("]}\n")
+
+
 class Map:
-    """Files with a style. They are read once; draw() moves the view over them.
+    """Files with a style, or GeoDataFrames. They are read once; draw() moves the view over them.
 
     labels: whether the style's symbol layers are drawn. fonts: folders that are searched for fonts before the system's.
     language: the code of the language of names, such as "de"; None: the local names.
@@ -77,7 +136,8 @@ class Map:
                  context=None):
         self._context = default(context)
         self._labels, self._fonts = labels, [as_path(folder) for folder in fonts]
-        self._inputs = [as_path(path) for path in inputs]
+        self._kept = []  # temporary files, which are deleted with the map
+        self._inputs = [self._as_file(each) for each in inputs]
         self._layer, self._where = as_text(layer), as_text(where)
         self._scene = self._mesh = self._features = None
         self._read_for = None  # the view that the features were read for; None: everything was read
@@ -92,6 +152,20 @@ class Map:
             else:
                 text = text if language is None else translate(core, text, name, language)
                 self._style = core.make(lib.camber_style_parse, core.pointer, text, len(text), name)
+
+    def _as_file(self, given):
+        """Returns the path of a file; a GeoDataFrame becomes one."""
+        if not hasattr(given, "geom_type") or not hasattr(given, "to_crs"):
+            try:
+                return as_path(given)
+            except TypeError:
+                raise TypeError("an input is of type %s; give a file, or a GeoDataFrame. camber.plot(data) draws lines of "
+                                "other kinds" % type(given).__name__) from None
+        file = tempfile.NamedTemporaryFile("w", suffix=".geojson", encoding="utf-8")
+        self._kept.append(file)
+        write_frame(given, file)
+        file.flush()
+        return as_path(file.name)
 
     def _read(self, core, view, once):
         """Reads the files, completely or for one view; or the style's own sources, for this view."""
@@ -137,6 +211,16 @@ class Map:
             pitch = own.pitch_deg if pitch is None else pitch
         return as_view(center, zoom, bbox, bearing or 0, pitch or 0, size, ratio, own)
 
+    def _warn_of_nothing(self):
+        """Says why a picture is empty, if it is."""
+        info = lib.camber_scene_get_info(self._scene)
+        if lib.camber_mesh_get_info(self._mesh).bytes or info.labels:
+            return
+        text = ffi.new("char[1024]")
+        lib.camber_features_explain_nothing(self._features, info.zoom, info.zoom, text, len(text))
+        why = re.sub(r"--bbox ([-+.,e\d]+)", r"bbox=(\1)", text_of(text))
+        warnings.warn("the picture is empty: %s" % re.sub(r"--(\w+)", r"\1=", why), stacklevel=3)
+
     def draw(self, *, center=None, zoom=None, bbox=None, bearing=None, pitch=None, size=(1024, 1024), ratio=1,
              simplify=SIMPLIFY_PX, method="strip", premultiplied=False, out=None):
         """Draws a view into an array. Without center, zoom and bbox it shows everything that the style draws."""
@@ -147,9 +231,96 @@ class Map:
             if self._mesh is None:
                 self._mesh = core.make(lib.camber_mesh_create, device, renderer)
             core.check(lib.camber_scene_tessellate(self._scene, self._mesh, pick(METHODS, "method", method)))
+            self._warn_of_nothing()
             frame = ffi.new("camber_frame *")
             frame[0] = lib.camber_scene_get_frame(self._scene, self._mesh)
             return render_frame(core, renderer, frame, out, premultiplied)
+
+    def _repr_png_(self):
+        return encode(self.draw(), context=self._context)
+
+    def save(self, path, *, paper=None, landscape=False, margin=None, dpi=None, title=None, subtitle=None, scale_bar=False,
+             north_arrow=False, grid=False, fit=None, size=None, ratio=None, quality=None, simplify=SIMPLIFY_PX, **view):
+        """Draws a view into a file: a picture (.png, .webp), or a sheet of paper (.pdf, .svg, or .png with paper=).
+
+        paper: "A4" and other names, or width and height in mm. margin: in mm. fit: without a center, "cover" fills the
+        sheet, and "contain" shows everything. The view is that of draw().
+        """
+        ending = os.path.splitext(os.fsdecode(path))[1].lower()
+        sheet = {"title": title, "subtitle": subtitle, "scale_bar": scale_bar, "north_arrow": north_arrow, "grid": grid}
+        if ending not in PAGES and ending not in PICTURES:
+            raise ArgumentError("%s: a map is saved as %s" % (os.fsdecode(path), ", ".join([*PICTURES, *PAGES])))
+        if ending not in PAGES and paper is None:
+            asked = [name for name, value in {**sheet, "landscape": landscape, "margin": margin, "fit": fit}.items() if value]
+            if asked:
+                raise ArgumentError("%s= needs a sheet; give paper=\"A4\", or save a .pdf" % asked[0])
+            picture = self.draw(size=size or (1024, 1024), ratio=ratio or 1, simplify=simplify, **view)
+            return self._write(path, encode(picture, PICTURES[ending], quality=quality, dpi=dpi or 0, context=self._context))
+        if paper is not None and size is not None:
+            raise ArgumentError("both paper and size are given; give one of them")
+        dpi = PRINTED_DPI if dpi is None else dpi
+        width, height = as_paper(paper, size, landscape)
+        if margin is None:
+            margin = 0 if size is not None and not (title or subtitle) else MARGIN_SHARE * min(width, height)
+        texts = {name: as_text(sheet[name]) for name in ("title", "subtitle")}
+        desc = ffi.new("camber_page_desc *", {**sheet, **texts, "width_mm": width, "height_mm": height, "margin_mm": margin,
+                                              "dpi": dpi, "ratio": ratio or 0})
+        made = self._print(path, PAGES.get(ending), desc, fit, simplify, view)
+        if made is not None:
+            self._write(path, encode(made, PICTURES[ending], quality=quality, dpi=dpi, context=self._context))
+
+    @staticmethod
+    def _write(path, data):
+        with open(path, "wb") as file:
+            file.write(data)
+
+    def _print(self, path, format, desc, fit, simplify, asked):
+        """Writes a page into a file; without a format, returns it as a picture."""
+        asked = {"center": None, "zoom": None, "bbox": None, "bearing": None, "pitch": None, **asked}
+        unknown = [name for name in asked if name not in ("center", "zoom", "bbox", "bearing", "pitch")]
+        if unknown:
+            raise TypeError("there is no argument %r; a view has center, zoom, bbox, bearing and pitch" % unknown[0])
+        if fit is not None and asked["center"] is not None:
+            raise ArgumentError("center and zoom already say what is shown; leave fit out")
+        view = self._view(**asked, size=(1024, 1024), ratio=1)
+        is_fitted = "kind" not in view
+        view["cover"] = is_fitted if fit is None else pick(FITS, "fit", fit)
+        with self._context._core as core:
+            device, renderer, _ = self._context._open(core)
+            page = core.make(lib.camber_page_create, core.pointer, desc)
+            sized = ffi.new("camber_view_desc *", view)
+            lib.camber_page_set_view(page, sized)
+            view.update(width=sized.width, height=sized.height, ratio=sized.ratio)
+            self._move(core, view, simplify)
+            core.check(lib.camber_page_set_credit(page, lib.camber_features_get_attribution(self._features)))
+            mesh = core.make(lib.camber_mesh_create, device, renderer)
+            if format is None:
+                return self._print_picture(core, page, renderer, mesh)
+            part = as_path(path) + b".part"
+            file = lib.camber_python_open(part)
+            if file == ffi.NULL:
+                raise FileError("%s: cannot be written: %s" % (os.fsdecode(path), os.strerror(ffi.errno)))
+            try:
+                try:
+                    core.check(lib.camber_page_write(page, self._scene, renderer, mesh, format,
+                                                     {"write": WRITE, "user": file}))
+                finally:
+                    is_written = lib.camber_python_close(file)
+                if not is_written:
+                    raise FileError("%s: cannot be written: %s" % (os.fsdecode(path), os.strerror(ffi.errno)))
+                os.replace(part, as_path(path))
+            except BaseException:
+                os.unlink(part)
+                raise
+
+    def _print_picture(self, core, page, renderer, mesh):
+        info = lib.camber_page_get_info(page)
+        out = as_output(None, info.width, info.height)
+        picture = ffi.new("camber_python_picture *", {"rgba": ffi.cast("uint8_t *", out.ctypes.data),
+                                                      "stride_bytes": out.strides[0], "width": info.width})
+        core.check(lib.camber_scene_tessellate(self._scene, mesh, METHODS["strip"]))
+        core.check(lib.camber_page_render(page, self._scene, renderer, mesh, TAKE_ROWS, picture, ffi.NULL))
+        return out
 
     def lines(self, *, center=None, zoom=None, bbox=None, bearing=None, size=(1024, 1024), ratio=1,
               simplify=SIMPLIFY_PX):

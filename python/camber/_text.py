@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from ._arrays import parse_color
+from ._colors import parse_color
 from ._core import ArgumentError, as_path, default, ffi, lib, pick, text_of
 from ._lines import as_points
 

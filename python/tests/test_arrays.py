@@ -109,9 +109,9 @@ def test_wrong_lines(points, offsets, error):
 
 @pytest.mark.parametrize("wrong", [
     {"width": -1}, {"width": float("nan")}, {"width": "8"}, {"width": [1, 2, 3]}, {"width": 1e9}, {"width": [[1, 2]]},
-    {"color": "red"}, {"color": "#12"}, {"color": "#ggg"}, {"color": (1, 2, 3)}, {"color": 7}, {"color": ["#fff"]},
+    {"color": "rouge"}, {"color": "#12"}, {"color": "#ggg"}, {"color": (1, 2, 3)}, {"color": 7}, {"color": ["#fff"]},
     {"color": numpy.zeros((2, 5))}, {"color": ["#fff"] * 3}, {"color": []}, {"color": None},
-    {"rows": [0]}, {"rows": [0, 1]}, {"rows": [-1, 0]}, {"rows": [0.5, 1]}, {"rows": [0, 2**24], "width": [1, 2]},
+    {"rows": [0]}, {"rows": [-1, 0]}, {"rows": [0.5, 1]}, {"rows": [0, 2**24], "width": [1, 2]},
     {"size": (0, 5)}, {"size": (5,)}, {"size": (5.5, 5)}, {"size": (70000, 5)}, {"size": None},
     {"join": "sharp"}, {"cap": 3}, {"overlap": []}, {"opacity": 0}, {"opacity": float("nan")}, {"miter_limit": -1},
     {"dash": []}, {"dash": [0, 0]}, {"dash": [-1, 2]}, {"dash": [1] * 500}, {"offset": float("inf")}, {"blur": float("nan")},

@@ -26,6 +26,15 @@ def test_the_example(city, tmp_path):
     run(city, tmp_path)
 
 
+def test_the_example_of_a_table():
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("geopandas")
+    told = subprocess.run([sys.executable, os.path.join(TREE, "examples/table.py"), "500"], check=True,
+                          capture_output=True, text=True).stdout
+    assert re.search(r"^500 lines.*^camber: \d+ ms.*^matplotlib: \d+ ms.*^density: \d+ ms, of 10000 points$", told,
+                     re.S | re.M), told
+
+
 @pytest.mark.skipif(not os.path.exists(PORTO), reason="CAMBER_DATA has no data/porto_portugal.osm.pbf")
 def test_the_example_of_a_large_city(tmp_path):
     run(PORTO, tmp_path)

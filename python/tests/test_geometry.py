@@ -2,6 +2,7 @@
 
 import ctypes
 import functools
+import struct
 
 import numpy
 import pytest
@@ -213,6 +214,86 @@ def test_points_that_are_missing_split_a_line(interleaved):
              for i, missing in enumerate((None, valid))]  # only y is missing
     assert (camber.draw(Arrow("+l", 1, [None, offsets], [Arrow("+s", 8, [None], sides)]), **WANTED)
             == camber.draw(split, **WANTED)).all()
+
+
+class Table(Arrow):
+    """A table of columns, as pyarrow and polars export it."""
+
+    def __init__(self, columns, length, metadata=None, **about):
+        super().__init__("+s", length, [None], list(columns.values()), **about)
+        self.columns, self.given = list(columns), dict(columns)
+        for name, column in columns.items():
+            column.schema.name = name.encode()
+        if metadata:
+            self.given["way"].schema.metadata = metadata
+
+    def __getitem__(self, name):
+        return self.given[name].kept[0][1]
+
+    def __arrow_c_stream__(self, requested_schema=None):
+        return Chunks(self).__arrow_c_stream__()
+
+    def __arrow_c_array__(self, requested_schema=None):
+        raise AssertionError("tables are read as streams")
+
+    __arrow_c_array__ = property()  # there is none
+
+
+def metadata_of(**pairs):
+    texts = [text for pair in pairs.items() for text in pair]
+    packed = b"".join(struct.pack("=i", len(text)) + text.encode() for text in
+                      (text.replace("__", ":") for text in texts))
+    return struct.pack("=i", len(pairs)) + packed
+
+
+def test_tables():
+    wanted = camber.draw(LINES, **WANTED)
+
+    def table(**about):
+        metadata = metadata_of(ARROW__extension__name="geoarrow.linestring",
+                               ARROW__extension__metadata='{"crs": "EPSG:25832", "edges": "planar"}')
+        return Table({"speed": numbers(numpy.array([1.0, 2, 3])), "way": linestrings(kind="+L")}, 3, metadata, **about)
+
+    assert (camber.draw(table(), **WANTED) == wanted).all()
+    part = Table({"way": linestrings()}, 2, offset=1)
+    assert (camber.draw(part, **WANTED) == camber.draw(LINES[1:], **WANTED)).all()
+    assert as_lines(table(), None, "f8", "i8").crs == "EPSG:25832"
+    pytest.importorskip("pyproj")
+    plotted = camber.plot(table(), column="speed", size=(70, 66), legend=False)
+    assert plotted.crs == "EPSG:25832"
+    assert (plotted.picture == camber.plot(LINES, column=[1.0, 2, 3], size=(70, 66), legend=False).picture).all()
+    with pytest.raises(TypeError, match="no column of lines.*camber.tracks"):
+        camber.draw(Table({"speed": numbers(numpy.array([1.0, 2, 3]))}, 3), **WANTED)
+
+
+def test_tracks():
+    points = numpy.concatenate(LINES)
+    keys = numpy.repeat([7, 3, 9], [3, 2, 3])
+    table = {"x": points[:, 0], "y": points[:, 1], "id": keys}
+
+    class Columns(dict):
+        columns = list(table)
+
+    wanted = camber.draw(LINES, **WANTED)
+    assert (camber.draw(camber.tracks(Columns(table), by="id"), **WANTED) == wanted).all()
+    order = [0, 3, 5, 1, 4, 6, 7, 2]  # the points of the lines alternate
+    mixed = Columns({name: column[order] for name, column in table.items()})
+    made, offsets = camber.tracks(mixed, "x", "y", "id")
+    assert offsets.tolist() == [0, 2, 5, 8] and (made[2:5] == LINES[0]).all() and (made[:2] == LINES[1]).all()
+    assert (camber.draw(camber.tracks(Columns(table)), **WANTED) == camber.draw(points, **WANTED)).all()
+    with pytest.raises(ValueError, match="no column 'lon'; the table has 'x', 'y', 'id'"):
+        camber.tracks(Columns(table), "lon", "lat")
+
+
+def test_polars_and_pyarrow():
+    polars = pytest.importorskip("polars")
+    pyarrow = pytest.importorskip("pyarrow")
+    wanted = camber.draw(LINES, **WANTED)
+    rows = [[{"x": x, "y": y} for x, y in line] for line in LINES]
+    for table in polars.DataFrame({"way": rows, "speed": [1.0, 2, 3]}), pyarrow.table({"way": rows, "speed": [1.0, 2, 3]}):
+        assert (camber.draw(table, **WANTED) == wanted).all()
+        assert (camber.plot(table, column="speed", legend=False).picture
+                == camber.plot(LINES, column=[1.0, 2, 3], legend=False).picture).all()
 
 
 def test_memory_that_is_not_aligned():

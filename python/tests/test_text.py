@@ -168,7 +168,7 @@ def test_memory_limit():
     (TypeError, lambda: camber.Text(0, 0, "a", colour="#000")),
     (TypeError, lambda: camber.draw([], texts=["a"])),
     (ValueError, lambda: camber.Text(math.nan, 0, "a")),
-    (ValueError, lambda: camber.Text(0, 0, "a", color="red")),
+    (ValueError, lambda: camber.Text(0, 0, "a", color="rouge")),
     (ValueError, lambda: camber.Text(0, 0, "a", size=0)),
     (ValueError, lambda: camber.Text(0, 0, "a", size=math.nan)),
     (ValueError, lambda: camber.Text(0, 0, "a", size=1e9)),

@@ -81,6 +81,8 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
         brush.mode = CAMBER_BRUSH_UNION;
     if (command->composite == CAMBER_COMPOSITE_MASKED)
         brush.mode = CAMBER_BRUSH_MASKED;
+    if (t->is_sum)
+        brush.mode = CAMBER_BRUSH_SUM;
     if (command->composite != CAMBER_COMPOSITE_STRAIGHT && command->composite != CAMBER_COMPOSITE_UNION) {
         brush.layer = ++t->layers;
         brush.layer_opacity = command->layer_opacity;
@@ -159,7 +161,7 @@ static camber_status add_area_rows(camber_cl_tables *t, const camber_draw_list *
     return status;
 }
 
-/* Adds the table of a command. Only brushes from first_brush on are reused for it. */
+/* Adds the table of a command. Only the command's own brushes are reused for it. */
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
     const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
@@ -183,8 +185,8 @@ static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list,
         brush.b = paint->color.b;
         brush.a = is_united ? command->layer_opacity : alpha;
         status = set_features(t, list, paint, &brush_ext);
-        if (status == CAMBER_OK)
-            status = use_brush(t, first_brush, &brush, &brush_ext, &number);
+        if (status == CAMBER_OK) /* in a sum, each row has a brush of its own */
+            status = use_brush(t, list->is_sum ? t->brush_count : first_brush, &brush, &brush_ext, &number);
         row[0] = paint->half_width_px;
         row[1] = paint->translate_px[0];
         row[2] = paint->translate_px[1];
@@ -248,7 +250,7 @@ static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list,
 /* ---- The scene ---- */
 
 static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *list) {
-    const camber_brush no_brush = {0};
+    const camber_brush no_brush = {.mode = t->is_sum ? CAMBER_BRUSH_SUM : CAMBER_BRUSH_OVER};
     const camber_brush_ext no_more = {0};
     uint32_t number;
     camber_status status =
@@ -280,6 +282,7 @@ camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *
     const camber_color back = frame->background;
     camber_cl_tables *t = tables;
     *t = (camber_cl_tables){.context = list->context,
+                            .is_sum = list->is_sum,
                             .images = {.table = &list->side_table, .nearest = list->view.nearest},
                             .layers = list->group_count, /* layers and groups have numbers of their own */
                             .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};

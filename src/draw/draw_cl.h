@@ -65,6 +65,7 @@ typedef struct camber_cl_tables {
     uint32_t *fill_images; /* position of each fill's image in the side table. 0: not added yet. NULL: no fills */
     uint32_t fill;         /* brush of the last fill so far that is not part of the background. 0: none */
     bool is_rich;          /* a brush has features */
+    bool is_sum;           /* all brushes are sums */
     camber_cl_images images;
     uint32_t layers;     /* layers that the scene has so far */
     float background[4]; /* premultiplied: the colour below the first input */

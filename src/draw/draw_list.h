@@ -99,6 +99,7 @@ typedef struct camber_draw_list {
     camber_image_set images; /* images of the frame, each once; image uses refer to them by number */
     uint32_t group_count;
     camber_side_table side_table;
+    bool is_sum;       /* the frame counts lines instead of colouring pixels */
     float thinnest_px; /* width of the thinnest paint. INFINITY: none */
     camber_plane_view view;
 } camber_draw_list;

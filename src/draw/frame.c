@@ -34,6 +34,44 @@ camber_status camber_renderer_render(camber_renderer *renderer, const camber_fra
     return render(renderer, frame, rows, user, NULL, stats);
 }
 
+/* Checks that a resolved frame can be summed: by a rasterizer that has sums, and only lines that are all of themselves.
+ */
+static camber_status check_sum(const camber_renderer *renderer, const camber_frame *frame) {
+    camber_context *context = renderer->share.device->context;
+    const unsigned wrong = CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE;
+    if (!renderer->raster)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "a sum: this renderer draws in GL; make one with CAMBER_RASTERIZER_OPENCL");
+    if (frame->background.a > 0.0f)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a sum: the frame has a background; leave it transparent");
+    for (size_t i = 0; i < renderer->list.command_count; i++) {
+        const camber_draw_command *command = renderer->list.commands + i;
+        if (!command->mesh || command->composite != CAMBER_COMPOSITE_STRAIGHT || command->features & wrong)
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "a sum: a pass has a fill, an area, a ramp, an image or an alpha; give opaque lines");
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_sum(camber_renderer *renderer, const camber_frame *frame, float *sums,
+                                  size_t stride_bytes, camber_frame_stats *stats) {
+    const size_t row_bytes = sizeof *sums * (size_t)frame->width;
+    camber_pixel_target place = {(uint8_t *)sums, row_bytes, stride_bytes ? stride_bytes : row_bytes};
+    camber_frame_stats made;
+    assert(sums && place.stride_bytes >= row_bytes);
+    camber_status status = camber_renderer_resolve(renderer, frame);
+    if (status == CAMBER_OK)
+        status = check_sum(renderer, frame);
+    if (status != CAMBER_OK)
+        return status;
+    renderer->list.is_sum = true;
+    status = camber_cl_render_into(renderer, frame, &place, &made);
+    renderer->list.is_sum = false;
+    if (stats && status == CAMBER_OK)
+        *stats = made;
+    return status;
+}
+
 camber_status camber_renderer_render_into(camber_renderer *renderer, const camber_frame *frame, uint8_t *rgba,
                                           size_t stride_bytes, camber_frame_stats *stats) {
     const size_t row_bytes = 4 * (size_t)frame->width;

@@ -5,7 +5,8 @@
  */
 #include "features/features.h"
 #include "features/mercator.h"
-#include "lines/importance.h"
+
+#include "camber_network.h"
 
 #include <limits.h>
 #include <math.h>
@@ -108,6 +109,12 @@ void camber_features_destroy(camber_features *features) {
     if (features->sprites)
         features->free_sprites(features->sprites);
     camber_free(context, features);
+}
+
+void camber_features_add_extract(camber_features *features, size_t first_polyline) {
+    if (features->extract_end != first_polyline)
+        features->extract_first = first_polyline;
+    features->extract_end = features->polyline_count;
 }
 
 uint64_t camber_features_key(const camber_features *f) {

@@ -34,7 +34,7 @@ struct camber_features {
      */
     double *points;
     size_t point_count, point_capacity;
-    /* point_count: how much each point matters, in world coordinates (lines/importance.h). It is computed after a file
+    /* point_count: how much each point matters, in world coordinates (camber_importance_weigh). It is computed after a file
      * was read. If several polylines of a file share a node, its importance is the same in all of them. */
     float *importance;
     size_t importance_capacity;
@@ -66,11 +66,12 @@ struct camber_features {
     char **layer_names; /* source layers, in the order in which they were found */
     size_t layer_count, layer_capacity;
 
-    bool wants_labels;    /* files are also read for symbol layers (labels.c) */
-    bool has_region;      /* readers keep only features that touch the region */
-    camber_region region; /* the region that a scene needs; read_for.c sets it */
-    uint32_t source;      /* the source of classes that are added from now on; CAMBER_NO_SOURCE at first */
-    char *attribution;    /* attribution_size bytes and a final 0; NULL: none yet */
+    size_t extract_first, extract_end; /* the polylines of extracts, which may reach far beyond what these are about */
+    bool wants_labels;                 /* files are also read for symbol layers (labels.c) */
+    bool has_region;                   /* readers keep only features that touch the region */
+    camber_region region;              /* the region that a scene needs; read_for.c sets it */
+    uint32_t source;                   /* the source of classes that are added from now on; CAMBER_NO_SOURCE at first */
+    char *attribution;                 /* attribution_size bytes and a final 0; NULL: none yet */
     size_t attribution_size, attribution_capacity;
     camber_features_stats stats;
     camber_features_times times;
@@ -92,6 +93,8 @@ camber_status camber_features_create_for(camber_context *context, const camber_s
 /* Whether reading the same files for another style would give the same set, because all features are from files and the
  * other style reads the same features and properties from them. */
 bool camber_features_suit(const camber_features *features, const camber_schema *schema, const camber_style *style);
+/* Marks the polylines from first_polyline on as an extract of OpenStreetMap. */
+void camber_features_add_extract(camber_features *features, size_t first_polyline);
 /* Returns a hash that changes when features are read, or the style, its sprites or its fonts are replaced. */
 uint64_t camber_features_key(const camber_features *features);
 /* Frees the points of the lines, which take most of a set's memory. Call this after the set's last scene was made,

@@ -595,12 +595,15 @@ static camber_status read_once(camber_features *features, const camber_source_de
     self.stats.clamped_points = self.lines.world.clamped_points;
     self.stats.antimeridian_splits = self.lines.world.antimeridian_splits;
     const int zoom = self.dataset.zoom;
+    const bool is_extract = self.dataset.osm;
     /* GDAL's memory is freed before the lines are copied. */
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
         status = camber_features_merge_and_weigh(features, polylines, !desc->keep_apart, CAMBER_MERGE_ANY);
     if (status == CAMBER_OK) {
+        if (is_extract)
+            camber_features_add_extract(features, polylines);
         if (zoom >= 0)
             camber_features_pin_borders(features, polylines, zoom);
         add_stats(features, &self);

@@ -1,12 +1,13 @@
-/* Computes the importance of the points of polylines; importance.h says what the numbers mean.
+/* Computes the importance of the points of polylines; camber_network.h says what the numbers mean.
  *
  * Each polyline is treated separately, by the Douglas-Peucker method: a range of points is split at the point that is
  * farthest from the segment between its ends. That point's importance is its distance, but at most the importance of
  * the point that split the surrounding range, so that no point is kept if one that it depends on is dropped. Values are
  * rounded up. Then points with equal coordinates get the largest importance among them. */
-#include "lines/importance.h"
-
+#include "base/base.h"
 #include "lines/farthest.h"
+
+#include "camber_network.h"
 
 #include <math.h>
 #include <string.h>
@@ -225,6 +226,11 @@ camber_status camber_importance_weigh(camber_context *context, const double *poi
                                       size_t polyline_count, float *importance) {
     if (polyline_count == 0)
         return CAMBER_OK;
+    for (size_t i = 0; i < polyline_count; i++)
+        if (offsets[i + 1] < offsets[i])
+            return camber_fail(context, CAMBER_ERROR_INPUT,
+                               "importance: offset %zu is %zu, and the one before it is %zu; they must ascend", i + 1,
+                               offsets[i + 1], offsets[i]);
     for (size_t i = 0; i < polyline_count; i++)
         weigh_polyline(points, offsets[i], offsets[i + 1], importance);
     const size_t first = offsets[0];

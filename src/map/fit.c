@@ -3,16 +3,35 @@
  * Input: features, and a view whose size, ratio and bearing are set. Output: the moved view and its plan. The features
  * that are drawn depend on the zoom, so the view is fitted to a first guess, and again if other features are drawn
  * then.
+ *
+ * Extracts of OpenStreetMap have whole ways and relations at their edges, so a river, a railway or the sea may reach
+ * far beyond what the map is about. In extracts each side of the bounds is cut off at the place beyond which there are
+ * only three lines in a thousand, if it is far outside:
+ *
+ *       +-----------------------------+  all lines
+ *       | +-----------+        a      |
+ *       | | 99 % of   |      river    |    the left, the upper and the lower side are near enough to stay; the right
+ *       | | the lines |     ~~~~~~~~~~|    side moves to the inner box
+ *       +-+-----------+---------------+
  */
 #include "map/plan.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Nearly every road style draws all of its classes at this zoom, so it is the first guess at which features will be
  * drawn. */
 static const double FIRST_ZOOM = 14.0;
 static const double LARGEST_FIT_ZOOM = 22.0;
 static const double FILL = 0.96; /* a margin of 2 % on each side */
+
+/* At most this many lines are looked at for the place beyond which there are few, spread over all of them. Bounds of
+ * fewer lines than SAMPLES_MIN are not cut off. */
+enum { SAMPLES_MAX = 4096, SAMPLES_MIN = 100 };
+/* The share of lines that may be beyond a side, and how far a side may be from that place, as a share of the size of
+ * the inner box, so that it stays. */
+static const double OUTER_SHARE = 0.003, NEAR_SHARE = 0.25;
+static const double INNER_MARGIN = 0.02;
 
 static bool is_empty(camber_box box) {
     return box.x0 > box.x1;
@@ -24,9 +43,8 @@ typedef struct two_bounds {
     camber_box plain, moved;
 } two_bounds;
 
-static void add_polyline(const camber_features *features, size_t polyline, const camber_view *view,
-                         two_bounds *bounds) {
-    camber_box box = CAMBER_BOX_EMPTY;
+static two_bounds bounds_of_polyline(const camber_features *features, size_t polyline, const camber_view *view) {
+    camber_box box = CAMBER_BOX_EMPTY, moved = CAMBER_BOX_EMPTY;
     double west = 1.0, east = 0.0;
     for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++) {
         const double x = features->points[2 * i], y = features->points[2 * i + 1];
@@ -36,14 +54,26 @@ static void add_polyline(const camber_features *features, size_t polyline, const
         west = fmin(west, x);
         east = fmax(east, x);
     }
-    if (is_empty(box))
+    if (!is_empty(box)) {
+        const double worlds = 0.5 * (west + east) < 0.5 ? 1.0 : 0.0;
+        const double du = worlds * view->cosine, dv = -worlds * view->sine;
+        moved = (camber_box){box.x0 + du, box.y0 + dv, box.x1 + du, box.y1 + dv};
+    }
+    return (two_bounds){box, moved};
+}
+
+static void unite(camber_box *box, camber_box other) {
+    if (is_empty(other))
         return;
-    const double worlds = 0.5 * (west + east) < 0.5 ? 1.0 : 0.0;
-    const double du = worlds * view->cosine, dv = -worlds * view->sine;
-    camber_box_add(&bounds->plain, box.x0, box.y0);
-    camber_box_add(&bounds->plain, box.x1, box.y1);
-    camber_box_add(&bounds->moved, box.x0 + du, box.y0 + dv);
-    camber_box_add(&bounds->moved, box.x1 + du, box.y1 + dv);
+    camber_box_add(box, other.x0, other.y0);
+    camber_box_add(box, other.x1, other.y1);
+}
+
+static void add_polyline(const camber_features *features, size_t polyline, const camber_view *view,
+                         two_bounds *bounds) {
+    const two_bounds added = bounds_of_polyline(features, polyline, view);
+    unite(&bounds->plain, added.plain);
+    unite(&bounds->moved, added.moved);
 }
 
 /* Returns the bounds of all features, with labels or without. */
@@ -55,13 +85,69 @@ static two_bounds bounds_of_all(const camber_features *features, const camber_vi
     return bounds;
 }
 
-/* Returns the bounds of what the plan draws. */
-static two_bounds bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan) {
-    two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
-    for (size_t s = 0; s < plan->set_count; s++)
-        for (size_t i = plan->all.first_entries[s]; i < plan->all.first_entries[s + 1]; i++)
-            add_polyline(features, plan->all.entries[i].polyline, view, &bounds);
-    return bounds;
+/* ---- Extracts ---- */
+
+typedef struct outer_sides {
+    size_t count;
+    double side[4][SAMPLES_MAX]; /* x0, y0, -x1 and -y1 of boxes, so that the smallest are the outermost */
+} outer_sides;
+
+static void add_sample(outer_sides *samples, camber_box box) {
+    if (is_empty(box) || samples->count == SAMPLES_MAX)
+        return;
+    const double sides[4] = {box.x0, box.y0, -box.x1, -box.y1};
+    for (int i = 0; i < 4; i++)
+        samples->side[i][samples->count] = sides[i];
+    samples->count++;
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Moves the sides that are far outside of most lines. */
+static camber_box cut_off(outer_sides *samples, camber_box all) {
+    double inner[4], outer[4] = {all.x0, all.y0, -all.x1, -all.y1};
+    const size_t beyond = 1 + (size_t)(OUTER_SHARE * (double)samples->count);
+    if (samples->count < SAMPLES_MIN)
+        return all;
+    for (int i = 0; i < 4; i++) {
+        qsort(samples->side[i], samples->count, sizeof *samples->side[i], compare_numbers);
+        inner[i] = samples->side[i][beyond];
+    }
+    for (int i = 0; i < 4; i++) {
+        const double size = -inner[i & 1] - inner[(i & 1) + 2];
+        if (size > 0.0 && inner[i] - outer[i] > NEAR_SHARE * size)
+            outer[i] = inner[i] - INNER_MARGIN * size;
+    }
+    return (camber_box){outer[0], outer[1], -outer[2], -outer[3]};
+}
+
+/* Returns the bounds of what the plan draws, without what reaches far beyond an extract. */
+static camber_status bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan,
+                               two_bounds *bounds) {
+    const size_t count = plan->all.first_entries[plan->set_count], step = count / SAMPLES_MAX + 1;
+    two_bounds extract = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
+    *bounds = extract;
+    outer_sides *samples = camber_alloc_zero(features->context, 2, sizeof *samples);
+    if (!samples)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t polyline = plan->all.entries[i].polyline;
+        const bool cuts = polyline >= features->extract_first && polyline < features->extract_end;
+        const two_bounds one = bounds_of_polyline(features, polyline, view);
+        unite(cuts ? &extract.plain : &bounds->plain, one.plain);
+        unite(cuts ? &extract.moved : &bounds->moved, one.moved);
+        if (cuts && i % step == 0) {
+            add_sample(&samples[0], one.plain);
+            add_sample(&samples[1], one.moved);
+        }
+    }
+    unite(&bounds->plain, cut_off(&samples[0], extract.plain));
+    unite(&bounds->moved, cut_off(&samples[1], extract.moved));
+    camber_free(features->context, samples);
+    return CAMBER_OK;
 }
 
 static void frame_bounds(camber_view *view, const two_bounds *bounds) {
@@ -82,7 +168,10 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     camber_status status = camber_plan_create(features, &guess, plan);
     if (status != CAMBER_OK)
         return status;
-    two_bounds bounds = bounds_of(features, view, plan);
+    two_bounds bounds, drawn;
+    status = bounds_of(features, view, plan, &bounds);
+    if (status != CAMBER_OK)
+        return status;
     if (is_empty(bounds.plain))
         bounds = bounds_of_all(features, view, false);
     if (is_empty(bounds.plain))
@@ -91,9 +180,10 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
         frame_bounds(view, &bounds);
     camber_plan_destroy(plan);
     status = camber_plan_create(features, view, plan);
+    if (status == CAMBER_OK)
+        status = bounds_of(features, view, plan, &drawn);
     if (status != CAMBER_OK)
         return status;
-    const two_bounds drawn = bounds_of(features, view, plan);
     if (is_empty(drawn.plain) || same_bounds(drawn.plain, bounds.plain))
         return CAMBER_OK;
     frame_bounds(view, &drawn);

@@ -652,6 +652,7 @@ static camber_status read_pbf(camber_features *features, const camber_source_des
         camber_features_reset(features, &before);
         return status;
     }
+    camber_features_add_extract(features, before.polyline_count);
     add_stats(&self);
     camber_rings_report(features, desc->path, before.polyline_count, &before.stats);
     camber_progress(self.context, "reading", 1);

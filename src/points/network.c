@@ -302,6 +302,7 @@ camber_status camber_network_create(camber_context *context, const camber_networ
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->holders = 1;
+    made->has_importance = desc->importance || desc->polyline_count == 0;
     made->serial = context->next_serial++;
     made->entry_count = desc->entries ? desc->entry_count : desc->polyline_count;
     size_t capacity = 0;

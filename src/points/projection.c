@@ -50,6 +50,11 @@ static camber_status check_camera(const camber_network *network, const camber_ca
     if (!(camera->simplify_px >= 0.0 && isfinite(camera->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "camera: a simplification of %g px; choose 0 or a distance in pixels", camera->simplify_px);
+    if (camera->simplify_px > 0.0 && !network->has_importance)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "camera: the network has no importance, so it cannot be simplified to %g px; compute it with "
+                           "camber_importance_weigh, or choose 0",
+                           camera->simplify_px);
     if (!camber_pitch_is_valid(camera->pitch_deg))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: a pitch of %g degrees; choose 0 to %g",
                            camera->pitch_deg, CAMBER_PITCH_MAX_DEG);

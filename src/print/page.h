@@ -35,6 +35,9 @@ bool camber_page_is_utf8(const char *text, size_t size);
 typedef struct camber_page_fonts {
     camber_context *context;
     camber_fonts *fonts;
+    /* other fonts of the page, whose faces of the same files are used again, so that a PDF has a file once. NULL: none
+     */
+    const struct camber_page_fonts *shared;
     cairo_font_face_t **faces; /* by source of the fonts; NULL: not needed so far */
     size_t face_count;
     bool as_paths; /* texts are drawn as shapes */

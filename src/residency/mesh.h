@@ -54,7 +54,9 @@ typedef struct camber_mesh_part {
     uint64_t *host_bases; /* first vertex and first index of each block, then the totals */
     size_t base_capacity;
     bool made; /* its buffers hold the points of the last tessellation, and the output if the mesh is drawn from it */
-    /* The method whose join words are in joins, whether they were scanned, and whether the output was emitted. */
+    /* Whether there are join words, the method that they are for, whether they were scanned, and whether the output was
+     * emitted. */
+    bool has_joins;
     camber_method classified;
     bool scanned, emitted;
     uint64_t held_bytes;

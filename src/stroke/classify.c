@@ -32,9 +32,8 @@ camber_status camber_part_classify(camber_mesh *mesh, camber_mesh_part *part, ca
     status = camber_part_run(
         mesh, part, (camber_launch){.name = "classify", .kernel = program->classify, .args = args, .arg_count = 11},
         CAMBER_STAGE_CLASSIFY);
-    if (status == CAMBER_OK)
-        part->classified = method;
-    else
-        part->made = false;
+    part->has_joins = status == CAMBER_OK;
+    part->classified = method;
+    part->made = part->made && status == CAMBER_OK;
     return status;
 }

@@ -67,10 +67,9 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
  *     1  slots: project them from the network, or upload them
  *     2  arc lengths of polylines; a network's slots already have theirs
  *     3  offset lines in place of their source lines
- *     4  classify: their join words */
+ *     4  classify: their join words. A mesh without output gets them when something needs them, which areas do not */
 static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
-    const camber_method method = mesh->output ? mesh->mesh_info.method : CAMBER_METHOD_STRIP;
-    part->scanned = part->emitted = false;
+    part->has_joins = part->scanned = part->emitted = false;
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
                                       : camber_part_check_source_lines(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
@@ -80,7 +79,8 @@ static camber_status make_points(camber_mesh *mesh, camber_mesh_part *part, bool
     if (status == CAMBER_OK && *fits && mesh->has_offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
-        status = camber_part_classify(mesh, part, method);
+        status = mesh->output ? camber_part_classify(mesh, part, mesh->mesh_info.method)
+                              : camber_device_finish(mesh->device); /* the caller may free what is uploaded */
     if (mesh->held) {
         camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_EMIT, mesh->held->projected);
         mesh->held->projected = NULL;
@@ -159,7 +159,7 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
 
 camber_status camber_part_ensure_classified(camber_mesh *mesh, camber_mesh_part *part, camber_method method) {
     const camber_status status = camber_part_ensure_made(mesh, part);
-    return status == CAMBER_OK && part->slot_count > 0 && part->classified != method
+    return status == CAMBER_OK && part->slot_count > 0 && (!part->has_joins || part->classified != method)
                ? camber_part_classify(mesh, part, method)
                : status;
 }

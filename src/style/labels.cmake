@@ -4,7 +4,7 @@
 # the layers of each schema of tiles. Kinds that are later in the list are placed first, and hide labels of earlier
 # kinds.
 
-set(label_kinds house stream street_small street street_main green garden airport pond peak lake halt station shield
+set(label_kinds house shop stream street_small sight street street_main green garden airport pond peak lake halt station shield
     hamlet suburb village town city capital sea country)
 
 # For each kind: its first zoom; text sizes in CSS px at that zoom and four zooms later; its font; its colour in the
@@ -18,6 +18,8 @@ set(label_zoom_green 14.5)
 set(label_zoom_garden 16)
 set(label_zoom_airport 11)
 set(label_zoom_halt 14)
+set(label_zoom_sight 16)
+set(label_zoom_shop 17.5)
 set(label_zoom_station 12.5)
 set(label_zoom_peak 12)
 set(label_zoom_pond 16)
@@ -47,6 +49,8 @@ set(label_size_green 10 13)
 set(label_size_garden 10 12)
 set(label_size_airport 11 14)
 set(label_size_halt 9.5 12)
+set(label_size_sight 10 12.5)
+set(label_size_shop 9.5 12)
 set(label_size_station 10 13)
 set(label_size_peak 10 12)
 set(label_size_pond 9.5 12)
@@ -81,6 +85,8 @@ set(label_color_green green)
 set(label_color_garden green)
 set(label_color_airport note)
 set(label_color_halt station)
+set(label_color_sight sight)
+set(label_color_shop sight)
 set(label_color_station station)
 set(label_color_peak note)
 set(label_color_pond water)
@@ -116,6 +122,11 @@ set(label_beside "\"text-variable-anchor\": [\"top\", \"bottom\", \"left\", \"ri
                 \"text-optional\": true, \"text-max-width\": 8, ")
 set(label_layout_halt "\"text-padding\": 12, \"icon-image\": \"dot\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 14, 0.5, 18, 0.75],
                 \"text-radial-offset\": 0.55, ${label_beside}")
+# A symbol that says nothing without its name.
+set(label_named_dot "\"icon-image\": \"dot\", \"icon-size\": 0.5, \"text-radial-offset\": 0.5, \"text-padding\": 8,
+                \"text-variable-anchor\": [\"top\", \"bottom\", \"left\", \"right\"], \"text-justify\": \"auto\", \"text-max-width\": 8, ")
+set(label_layout_sight "${label_named_dot}")
+set(label_layout_shop "${label_named_dot}")
 set(label_layout_station "\"icon-image\": \"square\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 12, 0.55, 17, 0.9],
                 \"text-radial-offset\": 0.6, ${label_beside}")
 set(label_layout_peak "\"symbol-sort-key\": [\"-\", 0, [\"to-number\", [\"get\", \"ele\"], 0]], \"icon-image\": \"triangle\",
@@ -133,15 +144,17 @@ set(label_light_note "#756c61")
 set(label_light_water "#3f7d99")
 set(label_light_green "#557a44")
 set(label_light_station "#4f5b78")
+set(label_light_sight "#8a5f4d")
 set(label_light_halo "rgba(252, 249, 243, 0.85)")
 set(label_dark_place "#dfe4ec")
 set(label_dark_suburb "#8290a6")
-set(label_dark_road "#b0b9c8")
+set(label_dark_road "#cfd6e1")
 set(label_dark_note "#8f9bae")
 set(label_dark_water "#6fa3c4")
 set(label_dark_green "#7fa585")
 set(label_dark_station "#a9b6d6")
-set(label_dark_halo "rgba(14, 18, 26, 0.85)")
+set(label_dark_sight "#c9a392")
+set(label_dark_halo "rgba(14, 18, 26, 0.7)")
 
 # Shields of motorways, of trunk roads, and of others: their boxes, the edges of the boxes, and their numbers.
 set(label_light_shield_box  "#b5553b" "#fdf3e6" "#fdf8ea")
@@ -193,6 +206,13 @@ set(label_osm_station "[\"all\", ${label_is_station}, [\"!\", ${label_is_halt}]]
 match_any(label_osm_green_leisure "[\"get\", \"leisure\"]" park nature_reserve golf_course)
 match_any(label_osm_green_landuse "[\"get\", \"landuse\"]" cemetery forest recreation_ground)
 set(label_osm_green "[\"any\", ${label_osm_green_leisure}, ${label_osm_green_landuse}]")
+set(label_sights museum theatre library hospital university college courthouse townhall arts_centre cinema)
+match_any(label_is_amenity "[\"get\", \"amenity\"]" ${label_sights})
+match_any(label_is_sight "[\"get\", \"tourism\"]" museum gallery attraction zoo aquarium)
+set(label_osm_sight "[\"any\", ${label_is_amenity}, ${label_is_sight}]")
+set(label_shops restaurant cafe bar pub fast_food bank pharmacy place_of_worship school kindergarten police fire_station
+    post_office marketplace)
+match_any(label_osm_shop "[\"get\", \"amenity\"]" ${label_shops})
 match_any(label_osm_garden "[\"get\", \"leisure\"]" garden)
 macro(label_osm_places kind)
   match_any(label_osm_${kind} "[\"get\", \"place\"]" ${ARGN})
@@ -239,6 +259,10 @@ set(label_tiles_airport_pois aerodrome)
 set(label_tiles_station_pois station train_station)
 set(label_tiles_station_public_transport station)
 set(label_tiles_halt_public_transport halt)
+set(label_tiles_sight_poi attraction museum hospital library theatre college town_hall art_gallery cinema zoo)
+set(label_tiles_sight_pois ${label_sights} attraction gallery zoo)
+set(label_tiles_shop_poi restaurant cafe bar fast_food bank pharmacy place_of_worship school police post)
+set(label_tiles_shop_pois ${label_shops})
 set(label_tiles_peak_mountain_peak *)
 set(label_tiles_peak_pois peak)
 set(label_tiles_lake_water_name lake bay strait)

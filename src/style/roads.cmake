@@ -87,13 +87,13 @@ set(dark_plain_fill "#1f2a3b")
 set(dark_casing_bridge "#56627a")
 set(dark_service    "#2b3444" "#222a37" "#0b0e14")
 set(dark_pedestrian "#2a3242" "#222a37" "#0b0e14")
-set(dark_minor      "#435066" "#333f51" "#0b0e14")
-set(dark_tertiary   "#58657b" "#47536a" "#0b0e14")
-set(dark_secondary  "#7b786d" "#67655f" "#0b0e14")
-set(dark_primary    "#a38d69" "#8a795d" "#0b0e14")
-set(dark_ramp       "#b98c61" "#9f7a57" "#0b0e14")
-set(dark_trunk      "#c0955f" "#a68256" "#0b0e14")
-set(dark_motorway   "#e0a968" "#cb975f" "#0b0e14")
+set(dark_minor      "#3c485b" "#333f51" "#0b0e14")
+set(dark_tertiary   "#4c586c" "#47536a" "#0b0e14")
+set(dark_secondary  "#5e5d58" "#67655f" "#0b0e14")
+set(dark_primary    "#786850" "#8a795d" "#0b0e14")
+set(dark_ramp       "#84674a" "#9f7a57" "#0b0e14")
+set(dark_trunk      "#8e7049" "#a68256" "#0b0e14")
+set(dark_motorway   "#ad804c" "#cb975f" "#0b0e14")
 set(dark_way        "#5a6273")
 set(dark_sidewalk   "#2b3341")
 set(dark_bridge_bed "#161b25")
@@ -218,7 +218,7 @@ endmacro()
 set(road_template [=[
     {"id": "@ID@", "type": "line",@HEAD@
      "filter": @FILTER@,
-     "layout": {"line-cap": "@CAP@", "line-join": "round", "line-round-limit": 1, "line-sort-key": @INDEX@},
+     "layout": {"line-cap": @CAP@, "line-join": "round", "line-round-limit": 1, "line-sort-key": @INDEX@},
      "paint": {"line-color": @COLOR@,
                "line-width": @WIDTH@}}]=])
 set(way_template [=[
@@ -238,18 +238,21 @@ set(bed_template [=[
 # Areas, such as pedestrian squares, get no road around them; the style city fills them.
 set(not_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
 
-# Appends the casings and the fills of a level. The casing of a bridge ends where the bridge does. Everything else
-# overlaps its neighbour, including the fill of a bridge; otherwise its casing would show through the smooth edge of its
-# end.
+# Appends the casings and the fills of a level. The casing of a bridge ends where the bridge does. On the ground, roads
+# from tertiary ones up end where the next way begins: it is a lesser road or a tunnel, which is below and has a round end,
+# or one of several roads of the class, which fill the corner together. Everything else overlaps its neighbour, including
+# the fill of a bridge; otherwise its casing would show through the smooth edge of its end.
 macro(append_roads out id level test)
   set(FILTER "[\"all\", ${not_area}, ${is_road}, ${test}]")
   foreach(part IN ITEMS casing fill)
     set(ID "${id}-${part}")
     set(COLOR "${color_${level}_${part}}")
     set(WIDTH "${width_${level}_${part}}")
-    set(CAP round)
+    set(CAP "\"round\"")
     if("${level}-${part}" STREQUAL "bridge-casing")
-      set(CAP butt)
+      set(CAP "\"butt\"")
+    elseif("${level}" STREQUAL "ground")
+      set(CAP "[\"case\", [\">=\", ${INDEX}, 7], \"butt\", \"round\"]")
     endif()
     append_layer(${out} "${road_template}")
   endforeach()

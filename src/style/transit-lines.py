@@ -8,7 +8,8 @@ slots next to each other.
 Ways within 25 m of each other, such as the tracks of a line, are joined into one, with the routes of all of them. A
 stretch with n routes becomes n features, each with its "slot". Slot 0 is the middle; from left to right, as seen in the
 stretch's direction, the routes are ordered by mode, colour and number. Stretches that continue each other have the same
-direction. The first feature of a stretch has the numbers of all its routes ("refs"). A station is a point: the stops of
+direction. Where a route's slot changes, it moves over within TAPER_M on both sides, in short features with "taper". The
+first feature of a stretch has the numbers of all its routes ("refs"). A station is a point: the stops of
 one name that are within 300 m, moved to the nearest street of routes. Only Python's standard library is needed."""
 
 import collections
@@ -23,6 +24,8 @@ SHORT_M = 250.0  # routes that are together for less only cross
 STEP_M = 20.0  # between vertices of a street
 SAMPLE_M = 5.0
 FINE_M = 0.1
+TAPER_M = 90.0  # of a stretch, in which a route moves from one slot to another
+TAPER_STEPS = 10
 STATION_M = 300.0  # stops of one name that are closer belong to the same station
 ALONG = math.cos(math.radians(30))  # ways at a larger angle to a street only cross it
 GROUPS = {"metro": ["subway", "light_rail", "monorail", "funicular"], "train": ["train"], "tram": ["tram"],
@@ -187,19 +190,29 @@ def stretches(streets):
                   for it in sorted(crossed.get(number, [routes]), key=sorted)])
 
 
-def direct(lines, streets):
-    """Gives stretches that share a route and continue each other straight on the same direction."""
+def ends_at(lines):
+    """Returns the ends at each vertex: numbers of lines, with 0 for the first end and 1 for the last."""
     ends = collections.defaultdict(list)
-    for number, (line, _, _) in enumerate(lines):
+    for number, (line, *_) in enumerate(lines):
         ends[line[0]].append((number, 0))
         ends[line[-1]].append((number, 1))
+    return ends
+
+
+def heading_of(line, end, streets):
+    """Returns the direction in which a line leaves its end."""
+    reach = min(3, len(line) - 1)
+    a, b = (line[0], line[reach]) if end == 0 else (line[-1], line[-1 - reach])
+    (ax, ay), (bx, by) = streets.at[a], streets.at[b]
+    return math.atan2(by - ay, bx - ax)
+
+
+def direct(lines, streets):
+    """Gives stretches that share a route and continue each other straight on the same direction."""
+    ends = ends_at(lines)
 
     def heading(number, end):
-        line = lines[number][0]
-        reach = min(3, len(line) - 1)
-        a, b = (line[0], line[reach]) if end == 0 else (line[-1], line[-1 - reach])
-        (ax, ay), (bx, by) = streets.at[a], streets.at[b]
-        return math.atan2(by - ay, bx - ax)
+        return heading_of(lines[number][0], end, streets)
 
     turned = {}
     for first in sorted(range(len(lines)), key=lambda n: (-len(lines[n][1][0]), -len(lines[n][0]), n)):
@@ -265,6 +278,64 @@ def simplified(points):
     return simplified(points[:middle + 1])[:-1] + simplified(points[middle:])
 
 
+def slots_of(routes):
+    """Returns the slot of each route of a stretch."""
+    return {route: i - (len(routes) - 1) / 2 for i, route in enumerate(sorted(routes, key=order_of))}
+
+
+def slots_at_ends(lines, streets):
+    """Returns, for each line, the slots of its routes at its two ends: halfway to the slot in the line that goes on."""
+    ends = ends_at(lines)
+    found = []
+    for number, (line, (routes, _)) in enumerate(lines):
+        slots = slots_of(routes)
+        at_ends = []
+        for end in (0, 1):
+            heading, there = heading_of(line, end, streets), {}
+            for route, slot in slots.items():
+                on = [(math.cos(heading - heading_of(lines[other][0], other_end, streets)), other, other_end)
+                      for other, other_end in ends[line[-end]] if other != number and route in lines[other][1][0]]
+                if on and min(on)[0] < -0.5:
+                    _, other, other_end = min(on)
+                    sign = 1 if other_end != end else -1  # if both begin or both end here, left and right are swapped
+                    there[route] = (slot + sign * slots_of(lines[other][1][0])[route]) / 2
+            at_ends.append(there)
+        found.append(at_ends)
+    return found
+
+
+def along(points):
+    """Returns the distance of each point from the first."""
+    far = [0.0]
+    for a, b in zip(points, points[1:]):
+        far.append(far[-1] + math.dist(a, b))
+    return far
+
+
+def part(points, far, start, end):
+    """Returns the part of a line between two distances along it."""
+    def at(distance):
+        i = next((i for i in range(1, len(far) - 1) if far[i] >= distance), len(far) - 1)
+        t = (distance - far[i - 1]) / ((far[i] - far[i - 1]) or 1)
+        return tuple(points[i - 1][k] + (points[i][k] - points[i - 1][k]) * t for k in (0, 1))
+    return [at(start)] + [point for point, it in zip(points, far) if start < it < end] + [at(end)]
+
+
+def tapered(points, slot, first, last):
+    """Yields a line in parts, with the slot of each and whether it is part of a taper. first, last: the slots at the
+    ends of the line."""
+    far = along(points)
+    reach = min(TAPER_M, far[-1] / 2)
+    ends = [reach if abs(there - slot) > 0.01 else 0.0 for there in (first, last)]
+    for there, begin, step in ((first, 0.0, ends[0] / TAPER_STEPS), (last, far[-1], -ends[1] / TAPER_STEPS)):
+        for k in range(TAPER_STEPS if step else 0):
+            t = (k + 0.5) / TAPER_STEPS
+            edges = sorted((begin + k * step, begin + (k + 1) * step))
+            yield part(points, far, *edges), there + (slot - there) * t * t * (3 - 2 * t), True
+    if ends[0] + ends[1] < far[-1]:
+        yield part(points, far, ends[0], far[-1] - ends[1]) if any(ends) else points, slot, False
+
+
 def stations(stops, streets):
     """Yields the name and the position of each station, for stops in metres."""
     found = []  # name, positions
@@ -297,16 +368,21 @@ def features(ways, routes, stops):
             in_tunnel = tags.get("tunnel", "no") != "no"
             streets.add([(x * east_m, y * north_m) for x, y in line], along[way], in_tunnel)
         smooth(streets)
-        for line, (here, in_tunnel) in direct(stretches(streets), streets):
+        lines = direct(stretches(streets), streets)
+        for (line, (here, in_tunnel)), (first, last) in zip(lines, slots_at_ends(lines, streets)):
             points = rounded([streets.at[vertex] for vertex in line])
-            coordinates = [[round(x / east_m, 7), round(y / north_m, 7)] for x, y in points]
-            for i, route in enumerate(sorted(here, key=order_of)):
-                properties = {key: value for key, value in route._asdict().items() if value}
-                properties.update(slot=i - (len(here) - 1) / 2, routes=len(here), tunnel=in_tunnel)
-                if i == 0:
-                    properties["refs"] = "  ".join(dict.fromkeys(it.ref for it in sorted(here, key=order_of) if it.ref))
-                yield {"type": "Feature", "properties": properties,
-                       "geometry": {"type": "LineString", "coordinates": coordinates}}
+            refs = "  ".join(dict.fromkeys(it.ref for it in sorted(here, key=order_of) if it.ref))
+            for route, slot in slots_of(here).items():
+                for places, its_slot, is_taper in tapered(points, slot, first.get(route, slot), last.get(route, slot)):
+                    properties = {key: value for key, value in route._asdict().items() if value}
+                    properties.update(slot=round(its_slot, 3), routes=len(here), tunnel=in_tunnel)
+                    if is_taper:
+                        properties["taper"] = True
+                    elif refs:
+                        properties["refs"], refs = refs, ""
+                    coordinates = [[round(x / east_m, 7), round(y / north_m, 7)] for x, y in places]
+                    yield {"type": "Feature", "properties": properties,
+                           "geometry": {"type": "LineString", "coordinates": coordinates}}
         here = [(name, (x * east_m, y * north_m)) for name, (x, y) in stops.get(group, ())]
         for name, (x, y) in stations(here, streets):
             yield {"type": "Feature", "properties": {"station": name, "group": group},

@@ -2,7 +2,6 @@
  * joins and butt ends; the mean difference from the union of all strokes over a square in the middle, as GL draws them
  * and as kernels do. Then the same lines as a network whose camera leaves points out. Needs the extracts under
  * $CAMBER_DATA/data; ends in 77 without them. */
-#include "lines/importance.h"
 #include "validate/oracle.h"
 
 #include "camber_network.h"

@@ -563,7 +563,9 @@ static void test_wrong_input(void **state) {
                                      {.scale_px = 1e19, .width = 1, .height = 1}, /* the network has steps of 2^-31 */
                                      {.scale_px = 1, .width = 0, .height = 1},
                                      {.scale_px = 1, .width = 65536, .height = 1},
-                                     {.scale_px = 1, .width = 1, .height = 1, .simplify_px = -1}};
+                                     {.scale_px = 1, .width = 1, .height = 1, .simplify_px = -1},
+                                     /* the network has no importance */
+                                     {.scale_px = 1, .width = 1, .height = 1, .simplify_px = 0.1}};
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
         assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, cameras + i, &desc),
                          CAMBER_ERROR_ARGUMENT);

@@ -139,6 +139,33 @@ static void compare_scene(const drawing *d, subject a, const subject *compared, 
     }
 }
 
+/* The same rows with their weights summed up, by brushes that each have a weight. */
+static void compare_sums(const drawing *d, subject a, const subject *compared, int which, int method) {
+    const camber_raster_area area = {32 * (uint32_t)method, 64, 500, 333};
+    float rows[CAMBER_KERNEL_ROWS][CAMBER_RASTER_ROW_WORDS] = {{0}};
+    camber_brush brushes[CAMBER_KERNEL_ROWS + 1] = {{.mode = CAMBER_BRUSH_SUM}};
+    for (uint32_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
+        const float width = d->strokes[i].width_px;
+        const uint32_t number = i + 1;
+        rows[i][0] = width > 0.0f ? 0.5f * width : -1.0f;
+        memcpy(rows[i] + 3, &number, sizeof number);
+        brushes[number] = (camber_brush){.r = 300.25f * (float)number, .a = 1, .mode = CAMBER_BRUSH_SUM};
+    }
+    const camber_raster_input run = {a.mesh, 0, a.mesh->polyline_count, 0};
+    const camber_raster_scene drawn = {rows[0], CAMBER_KERNEL_ROWS, brushes, CAMBER_KERNEL_ROWS + 1, &run, 1,
+                                       {0},     which % 2};
+    uint8_t *sums = compare_stages(a, compared, &drawn, area);
+    float most = 0;
+    for (size_t i = 0; i < (size_t)area.width * area.height; i++) {
+        float sum;
+        memcpy(&sum, sums + 4 * i, sizeof sum);
+        assert_true(sum >= 0.0f);
+        most = fmaxf(most, sum);
+    }
+    assert_true(most > 300.0f);
+    camber_free(a.on->context, sums);
+}
+
 static const camber_method METHODS[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
 
 static void test_twin(void **state) {
@@ -152,6 +179,7 @@ static void test_twin(void **state) {
             d.has_arc_length = (which + m) % 2;
             camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]);
             compare_scene(&d, (subject){e, mesh}, NULL, which, m);
+            compare_sums(&d, (subject){e, mesh}, NULL, which, m);
             camber_mesh_destroy(mesh);
             camber_made_scene_free(&d.lines);
         }
@@ -414,6 +442,7 @@ static void compare_lanes(const fixture *e, uint32_t lanes) {
         camber_mesh *mesh = make_mesh(&other, other.on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]),
                     *own = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, METHODS[m]);
         compare_scene(&d, (subject){&other, mesh}, &(subject){e, own}, which, m);
+        compare_sums(&d, (subject){&other, mesh}, &(subject){e, own}, which, m);
         camber_mesh_destroy(mesh);
         camber_mesh_destroy(own);
         d.has_arc_length = false;
@@ -490,6 +519,125 @@ static void test_loads(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
+/* ---- Sums ---- */
+
+enum { SUMMED = 300, SUMMED_PX = 200 };
+
+/* Lines of which each has its own row, and a weight of 1 to 3. */
+typedef struct summed {
+    camber_made_scene lines;
+    camber_stroke strokes[SUMMED];
+    camber_paint paints[SUMMED];
+    camber_pass pass;
+    camber_frame frame;
+} summed;
+
+static void fill_summed(summed *s) {
+    uint64_t seed = 12;
+    *s = (summed){.frame = {.width = SUMMED_PX, .height = SUMMED_PX, .passes = &s->pass, .pass_count = 1}};
+    for (size_t i = 0; i < SUMMED; i++) {
+        s->strokes[i] = (camber_stroke){.width_px = 0.5f + 0.25f * (float)(i % 20), .cap = (camber_cap)(i % 3)};
+        s->paints[i] = (camber_paint){.width_px = s->strokes[i].width_px, .color = {1.0f + (float)(i % 3), 0, 0, 1}};
+        for (int k = 0; k < 40; k++) {
+            const double y = camber_random_between(&seed, -10, SUMMED_PX);
+            camber_made_scene_point(&s->lines, camber_random_between(&seed, 0, SUMMED_PX + 10), y);
+        }
+        camber_made_scene_end(&s->lines, i);
+    }
+    s->pass.paints = s->paints;
+    s->pass.paint_count = SUMMED;
+}
+
+static float *sum_on(const fixture *e, camber_renderer *renderer, summed *s, size_t first, size_t count) {
+    const camber_tessellation_desc desc = {s->strokes, SUMMED, CAMBER_METHOD_STRIP, 0, false};
+    float *sums = malloc(sizeof *sums * SUMMED_PX * SUMMED_PX);
+    assert_non_null(sums);
+    if (!s->pass.mesh)
+        s->pass.mesh = fixture_mesh(e, renderer, &s->lines, &desc);
+    s->pass.first_polyline = first;
+    s->pass.polyline_count = count;
+    assert_int_equal(camber_renderer_sum(renderer, &s->frame, sums, 0, NULL), CAMBER_OK);
+    return sums;
+}
+
+/* A line's sum is what its picture covers, to half a level. */
+static void compare_with_picture(camber_renderer *renderer, const summed *s, size_t line, const float *sums) {
+    picture p = picture_draw(renderer, &s->frame);
+    for (uint32_t y = 0; y < SUMMED_PX; y++)
+        for (uint32_t x = 0; x < SUMMED_PX; x++) {
+            const float area = sums[y * SUMMED_PX + x] / s->paints[line].color.r;
+            if (!(fabsf(area - (float)picture_at(&p, x, y)[3] / 255.0f) < 0.51f / 255.0f))
+                fail_msg("line %zu at %u, %u: %g instead of %u", line, x, y, (double)area, picture_at(&p, x, y)[3]);
+        }
+    picture_free(&p);
+}
+
+/* The sum of all lines is the sum of each of them, to float rounding, and the same on a device that draws slices. */
+static void test_sums(void **state) {
+    const fixture *e = *state;
+    camber_renderer *renderer = e->on.renderer[CAMBER_FIXTURE_OPENCL];
+    static double expected[SUMMED_PX * SUMMED_PX];
+    summed s;
+    fill_summed(&s);
+    float *all = sum_on(e, renderer, &s, 0, 0);
+    memset(expected, 0, sizeof expected);
+    for (size_t i = 0; i < SUMMED; i++) {
+        float *one = sum_on(e, renderer, &s, i, 1);
+        for (size_t k = 0; k < SUMMED_PX * SUMMED_PX; k++)
+            expected[k] += (double)one[k];
+        if (i % 16 == 0)
+            compare_with_picture(renderer, &s, i, one);
+        free(one);
+    }
+    double most = 0;
+    for (size_t k = 0; k < SUMMED_PX * SUMMED_PX; k++) {
+        most = fmax(most, expected[k]);
+        assert_true(fabs((double)all[k] - expected[k]) <= 1e-5 * fmax(expected[k], 1.0));
+    }
+    assert_true(most > 255.0); /* more than a picture can say */
+    camber_mesh_destroy(s.pass.mesh);
+    s.pass.mesh = NULL;
+    const camber_device_desc desc = {.largest_buffer_bytes = 140 * 1024};
+    fixture small = {.context = e->context};
+    assert_int_equal(camber_device_create(e->context, &desc, &small.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    float *sliced = sum_on(&small, small.on.renderer[CAMBER_FIXTURE_OPENCL], &s, 0, 0);
+    assert_true(camber_raster_slice_count(small.on.renderer[CAMBER_FIXTURE_OPENCL]->raster) > 1);
+    assert_memory_equal(all, sliced, sizeof *all * SUMMED_PX * SUMMED_PX);
+    free(sliced);
+    free(all);
+    camber_mesh_destroy(s.pass.mesh);
+    camber_renderer_destroy(small.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(small.on.device);
+    camber_made_scene_free(&s.lines);
+}
+
+/* Frames of more than opaque lines are refused. */
+static void test_sums_refused(void **state) {
+    fixture *e = *state;
+    camber_renderer *renderer = e->on.renderer[CAMBER_FIXTURE_OPENCL];
+    summed s;
+    fill_summed(&s);
+    float *sums = sum_on(e, renderer, &s, 0, 0);
+    const camber_fill fill = {.color = {1, 0, 0, 1}};
+    summed wrong[] = {s, s, s, s};
+    wrong[0].frame.background = (camber_color){1, 1, 1, 1};
+    wrong[1].pass = (camber_pass){.kind = CAMBER_PASS_FILL, .fill = fill};
+    wrong[2].pass.opacity = 0.5f;
+    for (size_t i = 0; i < SUMMED; i++)
+        wrong[3].paints[i].fill = &fill;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        wrong[i].frame.passes = &wrong[i].pass;
+        wrong[i].pass.paints = wrong[i].paints;
+        assert_int_equal(camber_renderer_sum(renderer, &wrong[i].frame, sums, 0, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_story(&e->h, "a sum: ");
+    }
+    free(sums);
+    camber_mesh_destroy(s.pass.mesh);
+    camber_made_scene_free(&s.lines);
+}
+
 /* ---- Refusals ---- */
 
 static void test_refused(void **state) {
@@ -518,6 +666,7 @@ int main(void) {
         cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
         cmocka_unit_test(test_slices),        cmocka_unit_test(test_bound),
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_spills),
+        cmocka_unit_test(test_sums),          cmocka_unit_test(test_sums_refused),
     };
     return FIXTURE_CL_RUN(tests);
 }

@@ -9,7 +9,7 @@
 #include "fuzz_drawing.h"
 
 #include "features/rings.h"
-#include "lines/importance.h"
+#include "camber_network.h"
 #include "lines/lines.h"
 #include "lines/simplify.h"
 #include "map/triangulator.h"

@@ -173,7 +173,7 @@ CLONE
         echo "python3 - <<'PYTHON'"
         block python
         echo 'PYTHON'
-        echo 'od -An -c -N4 walk.png | grep -q "P   N   G"'
+        echo 'od -An -c -N4 flights.png | grep -q "P   N   G"'
         echo 'port=$((20000 + RANDOM % 12000))'
         echo 'camber serve /checkout/tests/data/santa_cruz/osm.mbtiles --listen 127.0.0.1:$port & server=$!'
         echo 'curl -fsS --retry 100 --retry-delay 1 --retry-all-errors http://127.0.0.1:$port/health && kill -0 $server'

@@ -75,7 +75,10 @@ expect_none_compiled hello
 "$folder/build/validate"
 [ "$map" != ON ] || "$folder/build/map" "$source/tests/data/santa_cruz/osm.mbtiles"
 [ "$map" != ON ] || [ "$("$folder/build/streets")" = "10 of 10 streets have their names" ]
-expect_none_compiled "validate, map and streets"
+status=0
+[ "$map" != ON ] || "$folder/build/poster" "$source/tests/data/santa_cruz/osm.mbtiles" || status=$?
+[ "$map" != ON ] || [ "$status" = 77 ] || [ "$status" = 0 ] && [ "$(head -c 5 poster.pdf)" = %PDF- ] || exit 1
+expect_none_compiled "validate, map, poster and streets"
 
 # A tile from the example's own server, at the first port that is free.
 ask_for_tile() {

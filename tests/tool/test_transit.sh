@@ -41,7 +41,14 @@ features = json.load(open("transit.geojson"))["features"]
 
 
 def those(ref):
-    return [(f["properties"], f["geometry"]["coordinates"]) for f in features if f["properties"].get("ref") == ref]
+    return [(f["properties"], f["geometry"]["coordinates"]) for f in features
+            if f["properties"].get("ref") == ref and "taper" not in f["properties"]]
+
+
+def tapers(ref, routes):
+    """The slots of a route's tapers in stretches of so many routes, from the west."""
+    return [slot for _, slot in sorted((f["geometry"]["coordinates"][0][0], f["properties"]["slot"]) for f in features
+            if f["properties"].get("ref") == ref and "taper" in f["properties"] and f["properties"]["routes"] == routes)]
 
 
 def expect(holds, what):
@@ -58,14 +65,16 @@ expect(along == beside and (shared["slot"], other["slot"]) == (-0.5, 0.5), "slot
 expect(shared["refs"] == "1  2" and "refs" not in other, "numbers of a shared street")
 expect(shared["colour"] == "#ff0000" and other["colour"] == "red", "colours")
 ends = sorted([along[0][0], along[-1][0]])
-expect(abs(ends[0]) < 0.0001 and abs(ends[1] - 0.01) < 0.0003, "where the shared street lies")
+expect(abs(ends[0]) < 0.0001 and abs(ends[1] - 0.01 + 90 / 111320) < 0.0003, "where the shared street lies")
 expect(all(0 <= y <= 0.0001 for _, y in along), "the middle of two tracks")
 (alone, rest), = [it for it in those("1") if it[0]["routes"] == 1]
 expect(alone["slot"] == 0 and alone["tunnel"] and not shared["tunnel"], "a route by itself")
 expect((rest[0][0] < rest[-1][0]) == (along[0][0] < along[-1][0]), "stretches that go on have one direction")
 (branch, turn), = [it for it in those("2") if it[0]["routes"] == 1]
 expect(branch["slot"] == 0 and abs(max(turn)[1] - 0.01) < 0.0001, "a branch")
-expect(any(end in (along[0], along[-1]) for end in (turn[0], turn[-1])), "a branch begins where the street ends")
+slots = tapers("1", 2) + tapers("1", 1)
+steps = [abs(b - a) for a, b in zip([-0.5] + slots, slots + [0])]
+expect(len(slots) == 20 and slots == sorted(slots) and max(steps) < 0.1, "route 1 moves over in small steps where 2 leaves")
 (crossing, across), = those("3")
 expect(crossing["slot"] == 0 and crossing["state"] == "construction" and "colour" not in crossing, "what crosses")
 expect(abs(abs(across[0][1] - across[-1][1]) - 0.02) < 0.0001, "what crosses is one line")

@@ -1,7 +1,7 @@
 /* The importance of points: what a tolerance keeps, against the book's recursive method. */
 #include "core.h"
 
-#include "lines/importance.h"
+#include "camber_network.h"
 
 #include <math.h>
 
@@ -250,6 +250,9 @@ static void test_part_of_a_set(void **state) {
     assert_int_equal(camber_importance_weigh(context, points, offsets, 2, w), CAMBER_OK);
     assert_true(w[0] == -1 && w[1] == -1);
     assert_true(isinf(w[2]) && isinf(w[3]) && isinf(w[4]) && isinf(w[5]) && isinf(w[6]));
+    const size_t wrong[] = {2, 5, 4};
+    assert_int_equal(camber_importance_weigh(context, points, wrong, 2, w), CAMBER_ERROR_INPUT);
+    assert_story(&h, "importance: offset 2");
     host_done(&h, context);
 }
 

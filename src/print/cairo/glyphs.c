@@ -11,6 +11,7 @@
 #include <hb-ot.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Cairo's own glyphs are flattened this finely, which is enough for a headline. */
 static const float TOLERANCE_EM = 1.0f / 1024.0f;
@@ -109,6 +110,28 @@ static bool is_instance(hb_font_t *font) {
     return false;
 }
 
+static bool is_same_file(hb_face_t *a, hb_face_t *b) {
+    hb_blob_t *bytes_a = hb_face_reference_blob(a), *bytes_b = hb_face_reference_blob(b);
+    unsigned size_a = 0, size_b = 0;
+    const char *data_a = hb_blob_get_data(bytes_a, &size_a), *data_b = hb_blob_get_data(bytes_b, &size_b);
+    const bool same = size_a > 0 && size_a == size_b && hb_face_get_index(a) == hb_face_get_index(b) &&
+                      (data_a == data_b || memcmp(data_a, data_b, size_a) == 0);
+    hb_blob_destroy(bytes_a);
+    hb_blob_destroy(bytes_b);
+    return same;
+}
+
+/* Finds a face of the same file among the page's other fonts. NULL: there is none. */
+static cairo_font_face_t *find_shared(const camber_page_fonts *f, hb_face_t *file) {
+    for (size_t i = 0; f->shared && i < f->shared->face_count; i++) {
+        cairo_font_face_t *face = f->shared->faces[i];
+        if (face && cairo_font_face_get_type(face) == CAIRO_FONT_TYPE_FT &&
+            is_same_file(file, hb_font_get_face(f->shared->fonts->sources[i].face->font)))
+            return cairo_font_face_reference(face);
+    }
+    return NULL;
+}
+
 /* Finds the face of a source of glyphs, or makes it. */
 static camber_status find_face(camber_page_fonts *f, uint32_t source, cairo_font_face_t **face) {
     if (source >= f->face_count) {
@@ -122,8 +145,11 @@ static camber_status find_face(camber_page_fonts *f, uint32_t source, cairo_font
     const camber_face *file = f->fonts->sources[source].face;
     cairo_font_face_t **found = f->faces + source;
     camber_status status = CAMBER_OK;
-    if (!*found && file && !is_instance(file->font))
-        status = open_file(hb_font_get_face(file->font), found);
+    if (!*found && file && !is_instance(file->font)) {
+        *found = find_shared(f, hb_font_get_face(file->font));
+        if (!*found)
+            status = open_file(hb_font_get_face(file->font), found);
+    }
     if (!*found && status == CAMBER_OK)
         *found = make_outlines(f->fonts);
     *face = *found;

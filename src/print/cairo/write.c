@@ -62,7 +62,8 @@ static void set_font_options(cairo_t *cr) {
 static camber_status draw_page(camber_page *page, camber_page_map *map, const camber_page_crop *crop) {
     const camber_page_info *info = &page->info;
     cairo_t *cr = map->cr;
-    camber_page_fonts own = {.context = page->context, .fonts = page->fonts, .as_paths = map->fonts.as_paths};
+    camber_page_fonts own = {
+        .context = page->context, .fonts = page->fonts, .shared = &map->fonts, .as_paths = map->fonts.as_paths};
     /* Only a PDF has a white sheet of its own. */
     if (map->fonts.as_paths && (page->desc.margin_mm > 0.0 || page->desc.title || page->desc.subtitle)) {
         cairo_set_source_rgb(cr, 1.0, 1.0, 1.0);

@@ -1,12 +1,17 @@
 /* Blend2D: every polyline stroked or every area filled by itself, or all of them as one path; by one thread, and by as
- * many as there are. */
+ * many as there are. These are Blend2D's own threads, or threads of the program, each of which draws a stripe of the
+ * picture with a context that is kept from frame to frame. */
 #include "peers/peer.h"
 
 #include <blend2d/blend2d.h>
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -31,6 +36,11 @@ void add_line(BLPath &path, const camber_lines &lines, std::size_t polyline) {
 BLResult put(BLContext &context, const BLPath &path, bool area) {
     const BLRgba32 black(0xff000000u);
     return area ? context.fill_path(path, black) : context.stroke_path(path, black);
+}
+
+void add_all(BLPath &path, const bench_peer_frame &frame) {
+    for (std::size_t i = 0; i < frame.lines->polyline_count; i++)
+        add_line(path, *frame.lines, i);
 }
 
 BLResult put_all(BLContext &context, const bench_peer_frame &frame, bool one_path) {
@@ -80,16 +90,21 @@ BLResult compile(BLContext &context, const bench_peer_frame &frame, bool one_pat
     return result == BL_SUCCESS ? context.flush(BL_CONTEXT_FLUSH_SYNC) : result;
 }
 
+BLContextCreateInfo create_info(const bench_peer_frame &frame, unsigned threads) {
+    BLContextCreateInfo info{};
+    info.thread_count = threads;
+    if (frame.avx2_only) {
+        info.flags = BL_CONTEXT_CREATE_FLAG_ISOLATED_JIT_RUNTIME | BL_CONTEXT_CREATE_FLAG_OVERRIDE_CPU_FEATURES;
+        info.cpu_features = up_to_avx2;
+    }
+    return info;
+}
+
 /* threads: 0 draws at once. */
 double draw(const bench_peer_frame *frame, unsigned threads, bool one_path) {
     BLImage image;
     BLContext context;
-    BLContextCreateInfo info{};
-    info.thread_count = threads;
-    if (frame->avx2_only) {
-        info.flags = BL_CONTEXT_CREATE_FLAG_ISOLATED_JIT_RUNTIME | BL_CONTEXT_CREATE_FLAG_OVERRIDE_CPU_FEATURES;
-        info.cpu_features = up_to_avx2;
-    }
+    const BLContextCreateInfo info = create_info(*frame, threads);
     if (image.create_from_data(BENCH_SIDE_PX, BENCH_SIDE_PX, BL_FORMAT_PRGB32, frame->rgba, 4 * BENCH_SIDE_PX) !=
         BL_SUCCESS)
         return -1;
@@ -122,6 +137,145 @@ double draw_threads_path(const bench_peer_frame *frame) {
     return draw(frame, std::thread::hardware_concurrency(), true);
 }
 
+/* Threads of the program, each with a stripe of the picture, a context, and a path of everything. All of this is kept
+ * from frame to frame. The caller draws the first stripe. */
+class stripes {
+  public:
+    ~stripes() {
+        {
+            const std::lock_guard<std::mutex> hold(lock);
+            frames = UINT64_MAX;
+        }
+        begins.notify_all();
+        for (std::thread &thread : threads)
+            thread.join();
+    }
+
+    /* keeps_paths: paths keep their points for as long as the lines are the same; else each frame makes them again, in
+     * the memory of the frame before. */
+    double draw(const bench_peer_frame &frame, bool keeps_paths) {
+        if (!prepare(frame))
+            return -1;
+        makes_paths = !keeps_paths || !is_same(frame);
+        of = frame;
+        point_count = frame.lines->point_count;
+        const auto begin = std::chrono::steady_clock::now();
+        draw_all();
+        const auto end = std::chrono::steady_clock::now();
+        for (const stripe &one : parts)
+            if (one.result != BL_SUCCESS)
+                return -1;
+        return std::chrono::duration<double, std::milli>(end - begin).count();
+    }
+
+  private:
+    struct stripe {
+        int first_row;
+        BLImage image;
+        BLContext context;
+        BLPath path;
+        BLResult result;
+    };
+
+    std::vector<stripe> parts;
+    std::vector<std::thread> threads;
+    bool makes_paths = true;
+    bench_peer_frame of{};       /* the frame that is drawn, whose lines the paths have */
+    std::size_t point_count = 0; /* of these lines: others may get the memory of lines that were freed */
+    uint8_t *rgba = nullptr;     /* the picture that the contexts draw on */
+    std::mutex lock;
+    std::condition_variable begins, ends;
+    uint64_t frames = 0; /* that have begun; UINT64_MAX: there are no more */
+    std::size_t drawing = 0;
+
+    bool is_same(const bench_peer_frame &frame) const {
+        return of.lines == frame.lines && of.areas == frame.areas && of.width_px == frame.width_px &&
+               point_count == frame.lines->point_count;
+    }
+
+    /* Before the clock runs, makes the stripes, unless they are there for this picture. */
+    bool prepare(const bench_peer_frame &frame) {
+        const int count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+        if (rgba == frame.rgba)
+            return true;
+        parts = std::vector<stripe>(static_cast<std::size_t>(count));
+        for (int i = 0; i < count; i++) {
+            stripe &one = parts[static_cast<std::size_t>(i)];
+            one.first_row = BENCH_SIDE_PX * i / count;
+            const int rows = BENCH_SIDE_PX * (i + 1) / count - one.first_row;
+            one.result = one.image.create_from_data(BENCH_SIDE_PX, rows, BL_FORMAT_PRGB32,
+                                                    frame.rgba + static_cast<std::size_t>(4 * BENCH_SIDE_PX) *
+                                                                     static_cast<std::size_t>(one.first_row),
+                                                    4 * BENCH_SIDE_PX);
+            if (one.result == BL_SUCCESS)
+                one.result = one.context.begin(one.image, create_info(frame, 0));
+            if (one.result == BL_SUCCESS)
+                one.result = compile(one.context, frame, true);
+            if (one.result != BL_SUCCESS)
+                return false;
+        }
+        for (std::size_t i = threads.size() + 1; i < parts.size(); i++)
+            threads.emplace_back([this, i] { work(i); });
+        rgba = frame.rgba;
+        return true;
+    }
+
+    void draw_stripe(stripe &one) const {
+        if (makes_paths) {
+            one.path.clear();
+            add_all(one.path, of);
+        }
+        one.context.reset_transform();
+        one.context.translate(0, -one.first_row);
+        one.context.fill_all(BLRgba32(0xffffffffu));
+        set_stroke(one.context, of.width_px);
+        one.context.set_fill_rule(BL_FILL_RULE_NON_ZERO);
+        one.result = put(one.context, one.path, of.areas != nullptr);
+        if (one.result == BL_SUCCESS)
+            one.result = one.context.flush(BL_CONTEXT_FLUSH_SYNC);
+    }
+
+    void draw_all() {
+        {
+            const std::lock_guard<std::mutex> hold(lock);
+            frames++;
+            drawing = threads.size();
+        }
+        begins.notify_all();
+        draw_stripe(parts[0]);
+        std::unique_lock<std::mutex> hold(lock);
+        ends.wait(hold, [this] { return drawing == 0; });
+    }
+
+    void work(std::size_t part) {
+        for (uint64_t drawn = 0;;) {
+            std::unique_lock<std::mutex> hold(lock);
+            begins.wait(hold, [&] { return frames != drawn; });
+            if (frames == UINT64_MAX)
+                return;
+            drawn = frames;
+            hold.unlock();
+            draw_stripe(parts[part]);
+            hold.lock();
+            if (--drawing == 0)
+                ends.notify_one();
+        }
+    }
+};
+
+double draw_stripes(const bench_peer_frame *frame, bool keeps_path) {
+    static stripes all;
+    return all.draw(*frame, keeps_path);
+}
+
+double draw_stripes_path(const bench_peer_frame *frame) {
+    return draw_stripes(frame, false);
+}
+
+double draw_stripes_kept(const bench_peer_frame *frame) {
+    return draw_stripes(frame, true);
+}
+
 const char *version() {
     static char text[32];
     BLRuntimeBuildInfo info;
@@ -150,4 +304,8 @@ const bench_peer bench_peer_blend2d_threads = {"blend2d_threads", "Blend2D", "th
                                                version,           build,     draw_threads};
 const bench_peer bench_peer_blend2d_threads_path = {
     "blend2d_threads_path", "Blend2D", "threads, one path", version, build, draw_threads_path};
+const bench_peer bench_peer_blend2d_stripes = {"blend2d_stripes", "Blend2D", "a stripe per thread, one path",
+                                               version,           build,     draw_stripes_path};
+const bench_peer bench_peer_blend2d_stripes_kept = {
+    "blend2d_stripes_kept", "Blend2D", "a stripe per thread, one path, kept", version, build, draw_stripes_kept};
 }

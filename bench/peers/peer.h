@@ -54,7 +54,7 @@ static inline size_t bench_peer_first_of(const bench_peer_frame *frame, size_t p
 
 extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik,
     bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path,
-    bench_peer_thorvg, bench_peer_thorvg_threads;
+    bench_peer_blend2d_stripes, bench_peer_blend2d_stripes_kept, bench_peer_thorvg, bench_peer_thorvg_threads;
 
 #ifdef __cplusplus
 }

@@ -17,6 +17,8 @@ const bench_peer *const bench_peers[] = {
     &bench_peer_blend2d_path,
     &bench_peer_blend2d_threads,
     &bench_peer_blend2d_threads_path,
+    &bench_peer_blend2d_stripes,
+    &bench_peer_blend2d_stripes_kept,
 #endif
 #ifdef CAMBER_BENCH_THORVG
     &bench_peer_thorvg,

@@ -54,14 +54,17 @@ static int time_run(job *j, run_times *times) {
     times->cull_count = camber_stage_times_get_ms(&info.times, "cull_count");
     times->project = camber_stage_times_get_ms(&info.times, "cull_emit");
     times->tessellate -= times->cull_count + times->project; /* from classify on */
+    const double classified_ms = camber_stage_times_get_ms(&info.times, "classify");
     times->scan = camber_stage_times_get_ms(&info.times, "scan");
     times->emit = camber_stage_times_get_ms(&info.times, "emit");
     frame = camber_input_frame(&j->input, j->mesh); /* a scene's frame is valid until the next call on the scene */
     if (status == CAMBER_OK)
         status = camber_renderer_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
-    info = camber_mesh_get_info(j->mesh); /* kernels may have classified the mesh only now */
+    info = camber_mesh_get_info(j->mesh);
     times->classify = camber_stage_times_get_ms(&info.times, "classify");
+    times->tessellate += times->classify - classified_ms; /* kernels classify the mesh when they draw its lines */
+    times->draw -= times->classify - classified_ms;
     times->shape = camber_stage_times_get_ms(&j->stats.times, "setup");
     times->count = camber_stage_times_get_ms(&j->stats.times, "bin_count");
     times->total = camber_stage_times_get_ms(&j->stats.times, "bin_scan");

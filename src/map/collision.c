@@ -3,7 +3,7 @@
  * Input: shapes, one after the other. Output: whether a shape is free. Main idea: a grid of cells, each with two lists
  * of the shapes that touch it: those of labels that must not overlap, and all others. Of labels that may overlap each
  * other, many can be at one place, and these are not compared. A grid that is very wide or high wraps: cells that are
- * far apart share their lists. So a town is not in one cell if a label on the other side of the world is placed with it.
+ * far apart share their lists. So a town is not in one cell if a label on the other side of the world is placed, too.
  */
 #include "map/collision.h"
 

@@ -2,21 +2,23 @@
  *
  * Input: shapes, one after the other. Output: whether a shape is free. Main idea: a grid of cells, each with two lists
  * of the shapes that touch it: those of labels that must not overlap, and all others. Of labels that may overlap each
- * other, many can be at one place, and these are not compared. */
+ * other, many can be at one place, and these are not compared. A grid that is very wide or high wraps: cells that are
+ * far apart share their lists. So a town is not in one cell if a label on the other side of the world is placed, too.
+ */
 #include "map/collision.h"
 
 #include <math.h>
 
-/* The most cells along a side of a grid. If the picture needs more, the cells are larger. */
+/* The most cells along a side of a grid that have lists of their own. */
 enum { MOST_CELLS_A_SIDE = 1024 };
 
 camber_status camber_collision_make(camber_context *context, camber_box bounds, double cell,
                                     camber_collision *collision) {
-    const double width = bounds.x1 - bounds.x0, height = bounds.y1 - bounds.y0;
-    camber_collision made = {.context = context, .bounds = bounds};
-    made.cell = fmax(cell, fmax(width, height) / MOST_CELLS_A_SIDE);
-    made.columns = (size_t)(width / made.cell) + 1;
-    made.rows = (size_t)(height / made.cell) + 1;
+    camber_collision made = {.context = context, .bounds = bounds, .cell = cell};
+    made.across = (size_t)((bounds.x1 - bounds.x0) / cell) + 1;
+    made.down = (size_t)((bounds.y1 - bounds.y0) / cell) + 1;
+    made.columns = made.across < MOST_CELLS_A_SIDE ? made.across : MOST_CELLS_A_SIDE;
+    made.rows = made.down < MOST_CELLS_A_SIDE ? made.down : MOST_CELLS_A_SIDE;
     made.cells = camber_alloc_zero(context, 2 * made.columns * made.rows, sizeof *made.cells);
     *collision = made;
     return made.cells ? CAMBER_OK : CAMBER_ERROR_MEMORY;
@@ -63,10 +65,20 @@ static size_t cell_of(double offset, double cell, size_t count) {
     return at <= 0.0 ? 0 : at >= (double)(count - 1) ? count - 1 : (size_t)at;
 }
 
+/* Returns the last cell of a range, if ranges of more than count cells would have a list twice. */
+static size_t last_cell(size_t first, size_t last, size_t count) {
+    return last - first < count ? last : first + count - 1;
+}
+
 static cell_range cells_of(const camber_collision *c, const camber_obstacle *shape) {
-    return (cell_range){
-        cell_of(shape->x0 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y0 - c->bounds.y0, c->cell, c->rows),
-        cell_of(shape->x1 - c->bounds.x0, c->cell, c->columns), cell_of(shape->y1 - c->bounds.y0, c->cell, c->rows)};
+    const size_t x0 = cell_of(shape->x0 - c->bounds.x0, c->cell, c->across);
+    const size_t y0 = cell_of(shape->y0 - c->bounds.y0, c->cell, c->down);
+    return (cell_range){x0, y0, last_cell(x0, cell_of(shape->x1 - c->bounds.x0, c->cell, c->across), c->columns),
+                        last_cell(y0, cell_of(shape->y1 - c->bounds.y0, c->cell, c->down), c->rows)};
+}
+
+static size_t list_of(const camber_collision *c, size_t x, size_t y) {
+    return y % c->rows * c->columns + x % c->columns;
 }
 
 /* Returns the lists of the shapes of labels that must not overlap, or of all others. */
@@ -94,10 +106,12 @@ bool camber_collision_hits(const camber_collision *collision, const camber_obsta
     const cell_range range = cells_of(c, shape);
     const uint32_t *never = lists_of(c, true), *others = lists_of(c, false);
     for (size_t y = range.y0; y <= range.y1; y++)
-        for (size_t x = range.x0; x <= range.x1; x++)
-            if (hits_list(c, shape, never[y * c->columns + x]) ||
-                (overlap == CAMBER_OVERLAP_NEVER && hits_list(c, shape, others[y * c->columns + x])))
+        for (size_t x = range.x0; x <= range.x1; x++) {
+            const size_t list = list_of(c, x, y);
+            if (hits_list(c, shape, never[list]) ||
+                (overlap == CAMBER_OVERLAP_NEVER && hits_list(c, shape, others[list])))
                 return true;
+        }
     return false;
 }
 
@@ -116,7 +130,7 @@ camber_status camber_collision_add(camber_collision *collision, const camber_obs
         return CAMBER_ERROR_MEMORY;
     for (size_t y = range.y0; y <= range.y1; y++)
         for (size_t x = range.x0; x <= range.x1; x++) {
-            uint32_t *cell = lists + y * c->columns + x;
+            uint32_t *cell = lists + list_of(c, x, y);
             c->entries[c->entry_count++] = (camber_grid_entry){(uint32_t)c->shape_count, *cell};
             *cell = (uint32_t)c->entry_count;
         }

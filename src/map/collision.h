@@ -13,16 +13,17 @@ typedef struct camber_obstacle {
 
 typedef struct camber_grid_entry {
     uint32_t shape;
-    uint32_t next; /* the next entry of the cell: its number + 1; 0: none */
+    uint32_t next; /* the next entry of the list: its number + 1; 0: none */
 } camber_grid_entry;
 
 typedef struct camber_collision {
     camber_context *context;
     camber_box bounds; /* shapes outside it are ignored */
     double cell;
-    size_t columns, rows;
-    /* By cell: the number of its first entry + 1; 0: none. First the lists of shapes of labels that must not
-     * overlap, then the lists of all others. */
+    size_t across, down;  /* cells */
+    size_t columns, rows; /* of lists, at most as many: the cell (x, y) has the list (x % columns, y % rows) */
+    /* By list: the number of its first entry + 1; 0: none. First the lists of shapes of labels that must not overlap,
+     * then the lists of all others. */
     uint32_t *cells;
     camber_grid_entry *entries;
     size_t entry_count, entry_capacity;

@@ -76,13 +76,23 @@ static void add_polyline(const camber_features *features, size_t polyline, const
     unite(&bounds->moved, added.moved);
 }
 
+/* Whether the second bounds are the smaller ones. */
+static bool is_moved_smaller(const two_bounds *bounds, const camber_view *view) {
+    camber_view plain = *view, moved = *view;
+    if (is_empty(bounds->plain))
+        return false;
+    camber_view_frame(&plain, bounds->plain, FILL, LARGEST_FIT_ZOOM);
+    camber_view_frame(&moved, bounds->moved, FILL, LARGEST_FIT_ZOOM);
+    return moved.zoom > plain.zoom;
+}
+
 /* Returns the bounds of all features, with labels or without. */
-static two_bounds bounds_of_all(const camber_features *features, const camber_view *view, bool labels) {
+static camber_box bounds_of_all(const camber_features *features, const camber_view *view, bool labels) {
     two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
     for (size_t p = 0; p < features->polyline_count; p++)
         if (labels || !camber_geometry_is_label(camber_features_kind(features, p)))
             add_polyline(features, p, view, &bounds);
-    return bounds;
+    return is_moved_smaller(&bounds, view) ? bounds.moved : bounds.plain;
 }
 
 /* ---- Extracts ---- */
@@ -124,12 +134,12 @@ static camber_box cut_off(outer_sides *samples, camber_box all) {
     return (camber_box){outer[0], outer[1], -outer[2], -outer[3]};
 }
 
-/* Returns the bounds of what the plan draws, without what reaches far beyond an extract. */
+/* Finds the bounds of what the plan draws, without what reaches far beyond an extract. Which half of the world is moved
+ * is decided before that: the few lines on the other side of a meridian may be next to all others. */
 static camber_status bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan,
-                               two_bounds *bounds) {
+                               camber_box *bounds) {
     const size_t count = plan->all.first_entries[plan->set_count], step = count / SAMPLES_MAX + 1;
-    two_bounds extract = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
-    *bounds = extract;
+    two_bounds extract = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY}, others = extract;
     outer_sides *samples = camber_alloc_zero(features->context, 2, sizeof *samples);
     if (!samples)
         return CAMBER_ERROR_MEMORY;
@@ -137,25 +147,21 @@ static camber_status bounds_of(const camber_features *features, const camber_vie
         const uint32_t polyline = plan->all.entries[i].polyline;
         const bool cuts = polyline >= features->extract_first && polyline < features->extract_end;
         const two_bounds one = bounds_of_polyline(features, polyline, view);
-        unite(cuts ? &extract.plain : &bounds->plain, one.plain);
-        unite(cuts ? &extract.moved : &bounds->moved, one.moved);
+        unite(cuts ? &extract.plain : &others.plain, one.plain);
+        unite(cuts ? &extract.moved : &others.moved, one.moved);
         if (cuts && i % step == 0) {
             add_sample(&samples[0], one.plain);
             add_sample(&samples[1], one.moved);
         }
     }
-    unite(&bounds->plain, cut_off(&samples[0], extract.plain));
-    unite(&bounds->moved, cut_off(&samples[1], extract.moved));
+    two_bounds all = others;
+    unite(&all.plain, extract.plain);
+    unite(&all.moved, extract.moved);
+    const bool moves = is_moved_smaller(&all, view);
+    *bounds = moves ? others.moved : others.plain;
+    unite(bounds, cut_off(&samples[moves], moves ? extract.moved : extract.plain));
     camber_free(features->context, samples);
     return CAMBER_OK;
-}
-
-static void frame_bounds(camber_view *view, const two_bounds *bounds) {
-    camber_view moved = *view;
-    camber_view_frame(view, bounds->plain, FILL, LARGEST_FIT_ZOOM);
-    camber_view_frame(&moved, bounds->moved, FILL, LARGEST_FIT_ZOOM);
-    if (moved.zoom > view->zoom)
-        *view = moved;
 }
 
 static bool same_bounds(camber_box a, camber_box b) {
@@ -168,25 +174,25 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     camber_status status = camber_plan_create(features, &guess, plan);
     if (status != CAMBER_OK)
         return status;
-    two_bounds bounds, drawn;
+    camber_box bounds, drawn;
     status = bounds_of(features, view, plan, &bounds);
     if (status != CAMBER_OK)
         return status;
-    if (is_empty(bounds.plain))
+    if (is_empty(bounds))
         bounds = bounds_of_all(features, view, false);
-    if (is_empty(bounds.plain))
+    if (is_empty(bounds))
         bounds = bounds_of_all(features, view, true);
-    if (!is_empty(bounds.plain))
-        frame_bounds(view, &bounds);
+    if (!is_empty(bounds))
+        camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
     camber_plan_destroy(plan);
     status = camber_plan_create(features, view, plan);
     if (status == CAMBER_OK)
         status = bounds_of(features, view, plan, &drawn);
     if (status != CAMBER_OK)
         return status;
-    if (is_empty(drawn.plain) || same_bounds(drawn.plain, bounds.plain))
+    if (is_empty(drawn) || same_bounds(drawn, bounds))
         return CAMBER_OK;
-    frame_bounds(view, &drawn);
+    camber_view_frame(view, drawn, FILL, LARGEST_FIT_ZOOM);
     camber_plan_destroy(plan);
     return camber_plan_create(features, view, plan);
 }

@@ -119,7 +119,7 @@ static bool write_key(camber_context *context, struct camber_label_words *words,
                               desc->justify,
                               desc->vertical};
     words->key_size = 0;
-    bool written = put(context, words, lengths, sizeof lengths);
+    bool written = put(context, words, lengths, sizeof lengths) && put_text(context, words, desc->language);
     for (size_t i = 0; i < desc->run_count && written; i++) {
         const camber_text_run *run = desc->runs + i;
         const double numbers[] = {(double)run->scale, (double)run->image_width_em, (double)run->image_height_em,

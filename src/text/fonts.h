@@ -99,7 +99,7 @@ camber_status camber_text_recall(camber_fonts *fonts, const camber_text_key *key
                                  camber_text **text);
 /* Copies a remembered text, if it is found. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_text_memo_find(camber_fonts *fonts, const camber_text_key *key, bool *found, camber_text **text);
-/* Remembers a copy of a text, unless it is long. Returns CAMBER_ERROR_MEMORY. */
+/* Remembers a copy of a text, unless it or its key is long. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_text_memo_put(camber_fonts *fonts, const camber_text_key *key, const camber_text *text);
 void camber_text_memo_free(camber_context *context, struct camber_text_memo *memo);
 

@@ -5,7 +5,8 @@
  * the hash of its key chooses, and takes the place of the text that was there, so the memory is bounded. */
 #include "text/fonts.h"
 
-enum { SLOTS = 16384, MOST_GLYPHS = 64 };
+/* A longer text is not remembered; nor is one with a long key, since characters without glyphs make keys longer. */
+enum { SLOTS = 16384, MOST_GLYPHS = 64, MOST_LINES = 64, MOST_KEY_BYTES = 2048 };
 
 typedef struct remembered {
     uint64_t hash;
@@ -77,7 +78,7 @@ camber_status camber_text_memo_put(camber_fonts *fonts, const camber_text_key *k
     remembered *slot = slot_of(fonts, key);
     if (!slot)
         return CAMBER_ERROR_MEMORY;
-    if (text->glyph_count > MOST_GLYPHS)
+    if (text->glyph_count > MOST_GLYPHS || text->line_count > MOST_LINES || key->size_bytes > MOST_KEY_BYTES)
         return CAMBER_OK;
     forget(fonts->context, slot);
     if (!(slot->key = camber_alloc(fonts->context, key->size_bytes, 1)) || !(slot->text = copy_text(text))) {

@@ -13,20 +13,37 @@ static camber_obstacle random_shape(uint32_t *state) {
     return (camber_obstacle){x, y, x + w, y + w, 0.5 * w};
 }
 
-static void test_collision(void **state) {
-    (void)state;
+/* Returns how many shapes the longest list of a grid has. */
+static size_t longest_list(const camber_collision *grid) {
+    size_t most = 0;
+    for (size_t i = 0; i < 2 * grid->columns * grid->rows; i++) {
+        size_t count = 0;
+        for (uint32_t e = grid->cells[i]; e; e = grid->entries[e - 1].next)
+            count++;
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+/* Compares a grid with a list of all shapes. Every second shape is moved far away. */
+static void compare_grid(camber_context *context, const camber_box *bounds, double far) {
     enum { SHAPES = 400 };
-    town *t = open_town(NAMES("names", "\"text-size\":12"));
     camber_collision grid;
     camber_obstacle shapes[SHAPES];
     camber_symbol_overlap overlaps[SHAPES];
     uint32_t seed = 1;
-    assert_int_equal(camber_collision_make(t->context, (camber_box){0.0, 0.0, 400.0, 200.0}, 32.0, &grid), CAMBER_OK);
+    assert_int_equal(camber_collision_make(context, *bounds, 32.0, &grid), CAMBER_OK);
     size_t there = 0, hits = 0;
     for (int i = 0; i < SHAPES; i++) {
-        const camber_obstacle shape = random_shape(&seed);
+        camber_obstacle shape = random_shape(&seed);
         const camber_symbol_overlap overlap = (camber_symbol_overlap)(next_share(&seed) * 3.0);
         bool hit = false;
+        if (i % 2) {
+            shape.x0 += far;
+            shape.x1 += far;
+            shape.y0 += far;
+            shape.y1 += far;
+        }
         for (size_t k = 0; k < there && overlap != CAMBER_OVERLAP_ALWAYS; k++)
             hit |= camber_obstacles_meet(&shape, shapes + k) &&
                    (overlap == CAMBER_OVERLAP_NEVER || overlaps[k] == CAMBER_OVERLAP_NEVER);
@@ -41,6 +58,31 @@ static void test_collision(void **state) {
         overlaps[there++] = overlap;
     }
     assert_true(there > 50 && hits > 50);
+    assert_true(longest_list(&grid) < there / 4);
+    camber_collision_free(&grid);
+}
+
+static void test_collision(void **state) {
+    (void)state;
+    town *t = open_town(NAMES("names", "\"text-size\":12"));
+    compare_grid(t->context, &(camber_box){0.0, 0.0, 400.0, 200.0}, 0.0);
+    close_town(t);
+}
+
+/* Two towns on opposite sides of the world: each of them has many cells all the same. */
+static void test_far_apart(void **state) {
+    (void)state;
+    town *t = open_town(NAMES("names", "\"text-size\":12"));
+    const double far = 1e7;
+    camber_collision grid;
+    compare_grid(t->context, &(camber_box){-50.0, -50.0, far + 600.0, far + 400.0}, far);
+    /* A shape that is wider than all lists is in each of them once. */
+    assert_int_equal(camber_collision_make(t->context, (camber_box){0.0, 0.0, far, 64.0}, 32.0, &grid), CAMBER_OK);
+    const camber_obstacle wide = {10.0, 10.0, far - 10.0, 20.0, 0.0}, late = {far - 90.0, 5.0, far - 80.0, 15.0, 0.0};
+    assert_false(camber_collision_hits(&grid, &late, CAMBER_OVERLAP_NEVER));
+    assert_int_equal(camber_collision_add(&grid, &wide, CAMBER_OVERLAP_NEVER), CAMBER_OK);
+    assert_true(camber_collision_hits(&grid, &late, CAMBER_OVERLAP_NEVER));
+    assert_int_equal(longest_list(&grid), 1);
     camber_collision_free(&grid);
     close_town(t);
 }
@@ -712,6 +754,7 @@ static void test_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_collision),
+        cmocka_unit_test(test_far_apart),
         cmocka_unit_test(test_point),
         cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_order),

@@ -931,7 +931,7 @@ static void test_out_of_memory(void **state) {
     for (long left = 0; status != CAMBER_OK; left++) {
         camber_scene *scene = NULL;
         a.left = left;
-        status = camber_scene_create(&t.features, &(camber_scene_desc){.simplify_px = 0.1}, &scene);
+        status = camber_scene_create(&t.features, &(camber_scene_desc){0}, &scene);
         if (status == CAMBER_OK)
             status = camber_scene_project(scene);
         assert_true(status == CAMBER_ERROR_MEMORY || (status == CAMBER_OK && left > 10));

@@ -967,7 +967,7 @@ static bool take_equal(camber_text *a, camber_text *b) {
 static void test_remembered(void **state) {
     (void)state;
     maker m;
-    char long_text[101];
+    char long_text[101], long_key[4001], lines[101];
     make_shipped(&m);
     memset(long_text, 'w', 100);
     long_text[100] = '\0';
@@ -981,6 +981,15 @@ static void test_remembered(void **state) {
     /* Long texts are not remembered. */
     assert_true(take_equal(recall(&m, "c", 2, long_text), shape(&m, long_text, noto_sans, (camber_text_desc){0})));
     assert_true(take_equal(recall(&m, "c", 2, "Voss"), shape(&m, "Voss", noto_sans, (camber_text_desc){0})));
+    /* Nor are texts of few glyphs whose keys are long or that have many lines. */
+    memset(long_key, 'k', 4000);
+    long_key[4000] = '\0';
+    memset(lines, '\n', 100);
+    lines[100] = '\0';
+    assert_true(take_equal(recall(&m, long_key, 3, "Moss"), shape(&m, "Moss", noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, long_key, 3, "Voss"), shape(&m, "Voss", noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "d", 4, lines), shape(&m, lines, noto_sans, (camber_text_desc){0})));
+    assert_true(take_equal(recall(&m, "d", 4, "Voss"), shape(&m, "Voss", noto_sans, (camber_text_desc){0})));
     unmake(&m);
 }
 

@@ -34,8 +34,8 @@ struct camber_features {
      */
     double *points;
     size_t point_count, point_capacity;
-    /* point_count: how much each point matters, in world coordinates (camber_importance_weigh). It is computed after a file
-     * was read. If several polylines of a file share a node, its importance is the same in all of them. */
+    /* point_count: how much each point matters, in world coordinates (camber_importance_weigh). It is computed after a
+     * file was read. If several polylines of a file share a node, its importance is the same in all of them. */
     float *importance;
     size_t importance_capacity;
     /* polyline_count + 1 entries, or none while the set is empty: polyline i has the points

@@ -21,8 +21,8 @@ struct camber_network {
     int32_t *x, *y; /* point_count coordinates, from 0 to 2^31 - 2 */
     float *importance;
     bool has_importance; /* false: it is unknown, and all points have INFINITY */
-    float *lengths; /* one per point: how far along its line it is, in steps. NULL: without arc lengths */
-    float *totals;  /* one per stretch: how long its whole line is, in steps */
+    float *lengths;      /* one per point: how far along its line it is, in steps. NULL: without arc lengths */
+    float *totals;       /* one per stretch: how long its whole line is, in steps */
     size_t point_count;
     camber_stretch *stretches; /* stretch_count stretches, and one after the last */
     size_t stretch_count;

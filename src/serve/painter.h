@@ -12,7 +12,7 @@ enum { CAMBER_MAP_SOURCE_THEMES = 2, CAMBER_MAP_SOURCE_MOST_RATIO = 8 };
 /* A map to draw: features with one style, or with the light and the dark theme of one. After camber_painter_put, only
  * the painter's thread uses its members, until it is closed. */
 typedef struct camber_map_source {
-    camber_features *features; /* with the first of the styles */
+    camber_features *features;                      /* with the first of the styles */
     camber_style *styles[CAMBER_MAP_SOURCE_THEMES]; /* light or the only one, then dark. NULL: not available */
     camber_renderer *renderer;
     camber_device *device;

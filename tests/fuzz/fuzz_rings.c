@@ -8,8 +8,8 @@
  */
 #include "fuzz_drawing.h"
 
-#include "features/rings.h"
 #include "camber_network.h"
+#include "features/rings.h"
 #include "lines/lines.h"
 #include "lines/simplify.h"
 #include "map/triangulator.h"

@@ -1,7 +1,7 @@
 /* Scenes: features under a view become polylines, rows, strokes, fills and networks. */
 #include "camber_map.h"
-#include "features/features.h"
 #include "camber_network.h"
+#include "features/features.h"
 #include "map/plan_network.h"
 #include "style/style.h"
 

@@ -744,12 +744,13 @@ CAMBER_API camber_status camber_renderer_render_into(camber_renderer *renderer, 
                                                      uint8_t *rgba, size_t stride_bytes, camber_frame_stats *stats);
 
 /* Counts lines instead of drawing them: each pixel gets the sum, over all rows, of the area that a row's polylines
- * cover of it, times the red of the row's paint. Within a row, coverage is accumulated as in an opaque pass, so a line
- * that crosses itself counts once; to count polylines one by one, give each its own row. Sums are floats, are not
- * limited, and are added in the same order in every run. The passes have opaque lines, without fills, ramps and images,
- * and the frame has no background. sums has rows from the top down, with stride_bytes from one row to the next; 0 means
- * width * 4. It is written in place as by camber_renderer_render_into. Returns the errors of camber_renderer_render,
- * and CAMBER_ERROR_ARGUMENT (a frame with anything else, or a renderer that draws in GL). */
+ * cover of it, times the red of the row's paint, any finite number. Coverage of consecutive polylines with the same row
+ * is accumulated as in an opaque pass, so a line that crosses itself counts once; to count polylines one by one, give
+ * each its own row. Sums are floats, are not limited, and are added in the same order in every run. The passes have
+ * opaque lines, without fills, ramps and images, and the frame has no background. sums has rows from the top down, with
+ * stride_bytes from one row to the next; 0 means width * 4. It is written in place as by camber_renderer_render_into.
+ * Returns the errors of camber_renderer_render, and CAMBER_ERROR_ARGUMENT (a frame with anything else, or a renderer
+ * that draws in GL). */
 CAMBER_API camber_status camber_renderer_sum(camber_renderer *renderer, const camber_frame *frame, float *sums,
                                              size_t stride_bytes, camber_frame_stats *stats);
 

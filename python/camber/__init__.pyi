@@ -98,8 +98,8 @@ class Plot:
     def _repr_png_(self) -> bytes: ...
     def save(self, path: _Path) -> None: ...
 
-def plot(data: Any, column: Optional[Any] = None, *, cmap: Optional[Any] = None, vmin: Optional[float] = None,
-         vmax: Optional[float] = None, color: Optional[_Colors] = None, missing: _Color = "#bbb", width: _Widths = 1,
+def plot(data: Any, column: Optional[Any] = None, *, cmap: Optional[Any] = None, vmin: Optional[Any] = None,
+         vmax: Optional[Any] = None, color: Optional[_Colors] = None, missing: _Color = "#bbb", width: _Widths = 1,
          size: Union[int, _Size, None] = None, bbox: Optional[Sequence[float]] = None, crs: Optional[Any] = None,
          background: Optional[_Color] = "#fff", legend: bool = True, title: Optional[str] = None,
          context: Optional[Context] = None, **style: Any) -> Plot: ...

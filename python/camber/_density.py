@@ -6,7 +6,7 @@ from ._colors import parse_color, sample
 from ._core import ArgumentError, default
 from ._draw import sum_lines
 from ._lines import Lines, as_lines
-from ._plot import MARGIN, Fit, Plot, box_of, crs_of, find_column, project, project_box, warn_of_nothing
+from ._plot import MARGIN, Fit, Plot, as_array, box_of, crs_of, find_column, project, project_box, warn_of_nothing
 
 LEVELS = 65536  # of a histogram
 
@@ -35,7 +35,10 @@ def stretch(counts, scale, span):
     values = numpy.where(counts > 0, counts, numpy.nan).astype(numpy.float64)
     if not (counts > 0).any():
         return values
-    low, high = (numpy.nanmin(values), numpy.nanmax(values)) if span is None else map(float, span)
+    try:
+        low, high = (numpy.nanmin(values), numpy.nanmax(values)) if span is None else map(float, span)
+    except (TypeError, ValueError):
+        raise ArgumentError("span is %r; give two numbers, the least and the largest count" % (span,)) from None
     low, high = scale(low), scale(high)
     with numpy.errstate(invalid="ignore"):
         return numpy.clip((scale(values) - low) / ((high - low) or 1.0), 0, 1)
@@ -51,7 +54,7 @@ class Density:
         self.counts, self.bounds, self.crs, self._context = counts, bounds, crs, context
 
     def __array__(self, dtype=None, copy=None):
-        return self.counts if dtype is None else self.counts.astype(dtype)
+        return as_array(self.counts, dtype, copy)
 
     def shade(self, cmap="inferno", how="eq_hist", *, background="#000", span=None):
         """Returns a Plot of the counts. how: "eq_hist" gives each colour the same number of pixels; "log", "cbrt" and
@@ -82,8 +85,12 @@ def density(data, offsets=None, *, weights=None, width=1, size=None, bbox=None, 
     """Counts how many lines cross each pixel, each weighted by the area of the pixel that it covers; returns a Density.
 
     data: as for plot(); a line that crosses itself counts once, and a geometry of several lines is one. weights: the
-    name of a column, or one value for each line. The other arguments are those of plot().
+    name of a column, or one value for each line; a line whose value is missing is not counted. The other arguments are those of plot().
     """
+    wrong = [name for name in ("color", "cmap", "background", "opacity", "overlap") if name in style]
+    if wrong:
+        raise ArgumentError("%s= is for pictures, and a density is numbers; camber.density(...).shade(cmap, "
+                            "background=...) colours them" % wrong[0])
     lines = as_lines(data, offsets, numpy.float64, numpy.int64, dots=True)
     own_crs = crs_of(data, lines)
     points = project(lines.points, own_crs, crs)
@@ -95,6 +102,9 @@ def density(data, offsets=None, *, weights=None, width=1, size=None, bbox=None, 
         weights = find_column(data, weights, lines.origin_count)
         if weights.dtype.kind != "f":
             raise ArgumentError("weights are %s; give numbers" % weights.dtype)
+        weights = numpy.where(numpy.isnan(weights), 0, weights)
+        if (numpy.abs(weights) > numpy.finfo(numpy.float32).max).any():
+            raise ArgumentError("weights go from %g to %g, which is too far for 32 bits" % (weights.min(), weights.max()))
     if numpy.ndim(width):
         raise ArgumentError("width has several values; a density has lines of one width, and weights= for each")
     style = {"cap": "round", **style, "width": width, "weights": weights, "size": fit.size, "context": default(context)}

@@ -250,6 +250,7 @@ def sum_lines(lines, *, width, weights, size, context, camera=None, **style):
             core.check(lib.camber_mesh_tessellate(mesh, polylines, table.tessellation()))
         else:
             desc, kept = describe_network(lines, rows)
+            desc.has_arc_length = table.dash is not None
             desc.step = 1 / (4096 * camera[2])  # so that a line's points do not depend on the other lines
             network = core.make(lib.camber_network_create, core.pointer, desc)
             view = ffi.new("camber_camera *", {"x": camera[0], "y": camera[1], "scale_px": camera[2], "width": size[0],

@@ -1,12 +1,16 @@
 """Converts lines from arrays, lists of arrays, GeoArrow, Shapely and GeoPandas into points and offsets."""
 
 import ctypes
+import datetime
+import decimal
 import importlib
 import json
 import struct
+import sys
 
 import numpy
 
+from ._core import ArgumentError
 from ._library import ffi
 
 
@@ -94,24 +98,57 @@ def columns_of(data):
     """Returns the names of a table's columns: pandas', polars' or pyarrow's. Empty: this is no table."""
     names = getattr(data, "column_names", None)  # pyarrow
     names = getattr(data, "columns", ()) if names is None else names
-    return [str(name) for name in names] if not callable(names) else []
+    return [name for name in names if isinstance(name, str)] if not callable(names) else []
 
 
 def to_array(column):
+    if getattr(getattr(column, "dtype", None), "tz", None) is not None:
+        return column.to_numpy("datetime64[ns]")  # which would be objects
     return column.to_numpy() if hasattr(column, "to_numpy") else numpy.asarray(column)
+
+
+def find_missing(values):
+    """Returns which elements of an array of objects are missing: None, NaN, NaT or pandas' NA."""
+    pandas = sys.modules.get("pandas")
+    return pandas.isna(values) if pandas else numpy.array([each is None or each != each for each in values], bool)
+
+
+def as_values(values):
+    """Returns a column as an array: of floats, in which what is missing is NaN, of dates, or of objects, which are
+    categories, None if missing."""
+    values = numpy.asarray(to_array(values))
+    if values.dtype.kind in "fiu":
+        return values.astype(numpy.float64, copy=False)
+    if values.dtype.kind in "mM":
+        return values
+    values = values.astype(object)
+    missing = find_missing(values)
+    kinds = {type(each) for each in values[~missing]}
+    if any(issubclass(kind, (list, dict, set, numpy.ndarray)) or hasattr(kind, "geom_type") for kind in kinds):
+        raise ArgumentError("the column has values of type %s; give numbers, dates, texts or booleans"
+                            % ", ".join(sorted(kind.__name__ for kind in kinds)))
+    if kinds and all(issubclass(kind, (int, float, decimal.Decimal, numpy.number)) and kind is not bool for kind in kinds):
+        return numpy.where(missing, numpy.nan, values).astype(numpy.float64)
+    if kinds == {datetime.date}:
+        return numpy.where(missing, None, values).astype("M8[D]")
+    return numpy.where(missing, None, values)
 
 
 def tracks(table, x="x", y="y", by=None):
     """Makes lines from a table of points, in their order: returns points and offsets, in a tuple that draw(), plot() and
     density() take. x, y: the names of columns. by: the column that says which line a point belongs to; None: one line.
-    Lines come in the order of their keys, unless the points of each line are together."""
+    Lines come in the order of their keys, unless the points of each line are together. Points without a key are left
+    out."""
     missing = [name for name in (x, y, by) if name is not None and name not in columns_of(table)]
     if missing:
         raise ValueError("there is no column %r; the table has %s" % (missing[0], ", ".join(map(repr, columns_of(table)))))
-    points = numpy.stack([to_array(table[name]).astype(numpy.float64) for name in (x, y)], axis=1)
+    points = numpy.stack([as_values(table[name]).astype(numpy.float64) for name in (x, y)], axis=1)
+    if by is not None:
+        keys = numpy.asarray(to_array(table[by]))
+        has_key = ~(find_missing(keys) if keys.dtype == object else keys != keys)
+        points, keys = points[has_key], keys[has_key]
     if by is None or not len(points):
         return points, numpy.array([0, len(points)])
-    keys = to_array(table[by])
     starts = numpy.concatenate([[0], numpy.flatnonzero(keys[1:] != keys[:-1]) + 1])
     if len(numpy.unique(keys[starts])) < len(starts):
         order = numpy.argsort(keys, kind="stable")

@@ -2,8 +2,10 @@
 
 import importlib
 import json
+import math
 import os
 import re
+import sys
 import tempfile
 import warnings
 
@@ -94,10 +96,15 @@ def translate(core, text, name, language):
 
 
 def as_json(value):
-    """Makes a value of a column fit for JSON: numpy's numbers, dates; None if it is missing."""
-    if value is None or value != value:
-        return None
-    return value.item() if isinstance(value, numpy.generic) and value.dtype.kind in "biuf" else str(value)
+    """Makes a value of a column fit for JSON: numpy's numbers, dates; None if it is missing or infinite."""
+    if isinstance(value, numpy.generic) and value.dtype.kind in "biuf":
+        value = value.item()
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    pandas = sys.modules.get("pandas")
+    return None if pandas and (value is pandas.NA or value is pandas.NaT) else str(value)
 
 
 def find_geojson(geometries):
@@ -115,11 +122,11 @@ def write_frame(frame, file):
         raise ArgumentError("the data does not say its CRS; tell it first, as in data.set_crs(\"EPSG:4326\")")
     if not (crs.is_geographic and crs.to_epsg() == 4326):
         frame = frame.to_crs(4326)
-    names = [name for name in getattr(frame, "columns", ()) if name != frame.geometry.name]
-    columns = [frame[name].tolist() for name in names]
+    columns = [(str(name), frame.iloc[:, i].tolist()) for i, name in enumerate(getattr(frame, "columns", ()))
+               if name != frame.geometry.name]  # by number, because names may occur twice
     file.write('{"type":"FeatureCollection","features":[\n')
     for i, geometry in enumerate(find_geojson(frame.geometry.values)):
-        properties = {str(name): as_json(column[i]) for name, column in zip(names, columns)}
+        properties = {name: as_json(column[i]) for name, column in columns}
         file.write('%s{"type":"Feature","properties":%s,"geometry":%s}\n'
                    % ("," if i else "", json.dumps(properties), geometry or "null"))
     file.write("]}\n")

@@ -3,7 +3,6 @@
 import difflib
 import math
 import os
-import sys
 import warnings
 
 import numpy
@@ -11,7 +10,7 @@ import numpy
 from ._colors import CATEGORIES, SHADES, as_colors, parse_color, sample
 from ._core import ArgumentError
 from ._draw import Network, as_size, draw, encode
-from ._lines import Lines, as_lines, columns_of, to_array
+from ._lines import Lines, as_lines, as_values, columns_of
 from ._text import Text
 
 MARGIN = 0.02  # of the picture, on each side
@@ -35,26 +34,6 @@ def crs_of(data, lines):
     return CRS.from_user_input(lines.crs)
 
 
-def as_values(values):
-    """Returns a column as an array: of floats, in which what is missing is NaN, of dates, or of objects, which are
-    categories, None if missing."""
-    values = numpy.asarray(to_array(values))
-    if values.dtype.kind in "fiu":
-        return values.astype(numpy.float64, copy=False)
-    if values.dtype.kind in "mM":
-        return values
-    values = values.astype(object)
-    pandas = sys.modules.get("pandas")
-    missing = pandas.isna(values) if pandas else numpy.array([each is None or each != each for each in values], bool)
-    kinds = {type(each) for each in values[~missing]}
-    if any(issubclass(kind, (list, dict, set, numpy.ndarray)) or hasattr(kind, "geom_type") for kind in kinds):
-        raise ArgumentError("the column has values of type %s; give numbers, dates, texts or booleans"
-                            % ", ".join(sorted(kind.__name__ for kind in kinds)))
-    if kinds and all(issubclass(kind, (int, float, numpy.number)) and kind is not bool for kind in kinds):
-        return numpy.where(missing, numpy.nan, values).astype(numpy.float64)
-    return numpy.where(missing, None, values)
-
-
 def find_column(data, column, count):
     """Returns the values of a column, one per row of the data; column is its name, or values."""
     if not isinstance(column, str):
@@ -71,7 +50,10 @@ def find_column(data, column, count):
         near = difflib.get_close_matches(column, names, 1)
         raise ArgumentError("there is no column %r; %s" % (column, "is it %r?" % near[0] if near else
                                                            "the data has %s" % ", ".join(map(repr, names))))
-    return as_values(data[column])
+    values = as_values(data[column])
+    if values.ndim != 1:
+        raise ArgumentError("several columns have the name %r; give one of them another name" % column)
+    return values
 
 
 # ---- Projection ----
@@ -100,7 +82,13 @@ def project(points, crs, wanted):
 
 def project_box(bbox, crs, wanted):
     """Returns the box around a projected box, whose sides may be curved."""
-    west, south, east, north = map(float, bbox)
+    try:
+        west, south, east, north = map(float, bbox)
+    except (TypeError, ValueError):
+        raise ArgumentError("bbox is %r; give four numbers: west, south, east, north" % (bbox,)) from None
+    if not (west <= east and south <= north):
+        raise ArgumentError("bbox is %r; give west, south, east, north, with west at most east and south at most north"
+                            % (bbox,))
     t = numpy.linspace(0, 1, 21)
     x, y = west + t * (east - west), south + t * (north - south)
     sides = [numpy.c_[x, numpy.full(21, side)] for side in (south, north)] + \
@@ -123,9 +111,11 @@ class Fit:
     """How world coordinates with y up become pixels: size, and (x, y) * (scale, -scale) + shift."""
 
     def __init__(self, box, size, margin=MARGIN):
-        width, height = max(box[2] - box[0], 0.0), max(box[3] - box[1], 0.0)
+        width, height = box[2] - box[0], box[3] - box[1]
+        if not (math.isfinite(width) and math.isfinite(height)):
+            raise ArgumentError("the picture would go from %g, %g to %g, %g, which is too far for its scale" % box)
         if size is None or isinstance(size, (int, numpy.integer)):
-            longest = LONGEST if size is None else int(size)
+            longest = LONGEST if size is None else as_size((size, size))[0]
             most = max(width, height)
             ratios = [max(side / most, 1 / FLATTEST) if most > 0 else 1.0 for side in (width, height)]
             size = [max(round(longest * ratio), 1) for ratio in ratios]
@@ -159,12 +149,22 @@ def format_number(value, step):
 
 def find_ticks(low, high):
     """Returns three to six round numbers from low to high, and how far they are apart."""
-    if not high > low:
+    if not high - low > 1e-290:
         return [low], 0 if low == round(low) else 10.0 ** math.floor(math.log10(abs(low)) - 2)
     rough = (high - low) / 4
     unit = 10.0 ** math.floor(math.log10(rough))
     step = min((unit * factor for factor in (1, 2, 2.5, 5, 10)), key=lambda step: abs(step - rough))
     return [n * step for n in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)], step
+
+
+def as_moment(value, unit):
+    """Returns a limit of a column of dates or of differences of dates as a number in the column's unit."""
+    try:
+        return float(numpy.asarray(value, unit).astype(numpy.int64))
+    except (TypeError, ValueError):
+        raise ArgumentError("vmin or vmax is %r, and the column has %s" % (
+            value, "dates; give a date, such as \"2026-01-31\"" if unit.kind == "M" else
+            "differences of dates; give one, such as numpy.timedelta64(3, \"h\")")) from None
 
 
 class Scale:
@@ -177,6 +177,7 @@ class Scale:
         if self.unit is not None:
             numbers = values.astype(numpy.int64).astype(numpy.float64)
             numbers[numpy.isnat(values)] = numpy.nan
+            low, high = (None if each is None else as_moment(each, values.dtype) for each in (low, high))
         finite = numpy.isfinite(numbers)
         shown = numbers[finite]
         self.low = float(low if low is not None else shown.min() if len(shown) else 0)
@@ -184,8 +185,11 @@ class Scale:
         if not self.low <= self.high:
             raise ArgumentError("vmin is %g and vmax %g; vmin must not be the larger one" % (self.low, self.high))
         span = self.high - self.low or 1.0
-        with numpy.errstate(invalid="ignore"):
-            shades = numpy.clip((numbers - self.low) * (SHADES / span), 0, SHADES - 1)
+        if not math.isfinite(span):
+            raise ArgumentError("the colours would go from %g to %g, which is too far; give vmin and vmax"
+                                % (self.low, self.high))
+        with numpy.errstate(invalid="ignore", over="ignore"):
+            shades = numpy.clip((numbers - self.low) / span * SHADES, 0, SHADES - 1)
         self.rows = numpy.where(finite, shades, SHADES).astype(numpy.uint32)
         self.colors = numpy.concatenate([sample("viridis" if cmap is None else cmap), [parse_color(missing)]])
         self.has_missing = not finite.all()
@@ -210,10 +214,13 @@ class Categories:
             colors = as_colors(["#" + digits for digits in CATEGORIES])[0]
             colors = colors[numpy.arange(count) % len(colors)]
         elif isinstance(cmap, dict):
+            cmap = {str(name): color for name, color in cmap.items()}  # booleans are texts here
             colors = as_colors([cmap.get(name, missing) for name in self.names])[0]
         else:
             colors = sample(cmap, count) if isinstance(cmap, str) or callable(cmap) else as_colors(cmap)[0]
-            colors = colors[numpy.arange(count) % len(colors)] if len(colors) else colors
+            if count and not len(colors):
+                raise ArgumentError("the colour map is an empty list; give at least one colour")
+            colors = colors[numpy.arange(count) % max(len(colors), 1)]
         self.colors = numpy.concatenate([colors.reshape(-1, 4), [parse_color(missing)]])
         self.has_missing = bool(missing_at.any())
 
@@ -292,6 +299,13 @@ def add_legend(picture, colored, title, background, context):
 # ---- Plots ----
 
 
+def as_array(array, dtype, copy):
+    """Returns an array as numpy asks for it by __array__: copy is None if it may be shared."""
+    if copy is False and dtype is not None and array.dtype != dtype:
+        raise ValueError("an array of %s cannot be had as %s without a copy" % (array.dtype, dtype))
+    return array.astype(array.dtype if dtype is None else dtype, copy=bool(copy))
+
+
 class Plot:
     """A picture of lines: an array (picture) that notebooks show. bounds: what it shows, in the CRS crs."""
 
@@ -299,7 +313,7 @@ class Plot:
         self.picture, self.bounds, self.crs, self._context = picture, bounds, crs, context
 
     def __array__(self, dtype=None, copy=None):
-        return self.picture if dtype is None else self.picture.astype(dtype)
+        return as_array(self.picture, dtype, copy)
 
     def _repr_png_(self):
         return encode(self.picture, context=self._context)
@@ -387,8 +401,11 @@ def plot(data, column=None, *, cmap=None, vmin=None, vmax=None, color=None, miss
         rows = style.pop("rows", None)
         if rows is None and (numpy.ndim(width) or as_colors(style["color"])[1]):
             rows = range(lines.origin_count)
+        if len(style.pop("texts", ())):
+            raise ArgumentError("texts are drawn without a bbox only")
+        style.pop("fonts", None)
         network = Network(Lines(points * (1, -1), lines.offsets, lines.origins, lines.origin_count), rows=rows,
-                          context=context)
+                          keep_open=style.pop("keep_open", False), dashed=style.get("dash") is not None, context=context)
         network._warns = False  # warn_of_nothing has told
         picture = network.draw(center=(fit.center[0], -fit.center[1]), scale=fit.scale, **style)
     if colored is not None and legend:

@@ -338,3 +338,98 @@ def test_a_map_on_paper(city, tmp_path):
         shown.save(tmp_path / "nowhere" / "c.pdf")
     with pytest.raises(TypeError, match="there is no argument 'zom'"):
         shown.save(tmp_path / "c.pdf", zom=3)
+
+
+# ---- Values that are missing, extreme or of unusual types ----
+
+
+def test_dates_in_columns(frame):
+    pandas = pytest.importorskip("pandas")
+    days = pandas.Series(pandas.date_range("2026-01-01", periods=3))
+    style = {"column": "day", "width": 3, "size": (90, 90), "legend": False}
+    wanted = camber.plot(frame.assign(day=days), **style).picture
+    for same in days.dt.tz_localize("UTC"), days.dt.date:
+        assert (camber.plot(frame.assign(day=same), **style).picture == wanted).all()
+    limits = {"vmin": "2026-01-01", "vmax": pandas.Timestamp("2026-01-03")}
+    assert (camber.plot(frame.assign(day=days), **limits, **style).picture == wanted).all()
+    with pytest.raises(ValueError, match="give a date"):
+        camber.plot(frame.assign(day=days), vmin="soon", **style)
+
+
+@pytest.mark.parametrize("arguments,told", [
+    ({"column": [-1.7e308, 0, 1.7e308]}, "too far; give vmin and vmax"), ({"column": "speed", "vmax": numpy.inf}, "too far"),
+    ({"bbox": (10.2, 50, 10, 50.1)}, "west at most east"), ({"bbox": 5}, "four numbers"), ({"size": -5}, "1 to 65535"),
+    ({"column": "kind", "cmap": []}, "empty list"), ({"bbox": (10, 50, 10.1, 50.1), "texts": [camber.Text(1, 1, "x")]},
+                                                     "without a bbox")])
+def test_extreme_arguments(frame, arguments, told):
+    with pytest.raises(ValueError, match=told):
+        camber.plot(frame, **arguments)
+
+
+def test_extreme_values(frame):
+    camber.plot(frame, column=[0, 5e-324, 0])
+    with pytest.raises(ValueError, match="too far for its scale"):
+        camber.plot(numpy.array([[0, 0], [1e308, -1e308], [-1e308, 3]]))
+    twice = frame.copy()
+    twice.insert(0, "speed", frame.speed, allow_duplicates=True)
+    with pytest.raises(ValueError, match="several columns have the name 'speed'"):
+        camber.plot(twice, column="speed")
+    with pytest.raises(ValueError, match="there is no column '5'"):
+        camber.plot(frame.rename(columns={"speed": 5}), column="5")
+
+
+def test_categories_of_booleans_have_colors(frame):
+    style = {"width": 9, "size": (60, 60), "legend": False}
+    wanted = camber.plot(frame, color="red", **style).picture
+    assert (camber.plot(frame.assign(flag=True), column="flag", cmap={True: "red"}, **style).picture == wanted).all()
+
+
+def test_dashes_in_a_bbox(frame):
+    box = {"bbox": (10.0, 50.0, 10.2, 50.1), "size": (90, 90)}
+    for count in lambda **style: (camber.plot(frame, **style).picture[..., 0] < 128).sum(), \
+            lambda **style: camber.density(frame, **style).counts.sum():
+        assert 0 < count(dash=[4, 4], **box) < 0.8 * count(**box)
+
+
+def test_weights_that_are_missing_or_infinite(frame):
+    some = camber.density(frame.assign(speed=[1, None, 3]), weights="speed", size=(60, 60)).counts
+    assert (some == camber.density(frame.assign(speed=[1, 0, 3]), weights="speed", size=(60, 60)).counts).all()
+    for far in numpy.inf, -1e300:
+        with pytest.raises(ValueError, match="too far for 32 bits"):
+            camber.density(frame.assign(speed=[1, far, 3]), weights="speed")
+    with pytest.raises(ValueError, match="shade"):
+        camber.density(frame, color="red")
+    with pytest.raises(ValueError, match="two numbers"):
+        camber.density(frame, size=20).shade(how="log", span=5)
+
+
+def test_copies_are_copies(frame):
+    for made, own in ((camber.plot(frame, size=9), "picture"), (camber.density(frame, size=9), "counts")):
+        assert not numpy.shares_memory(made.__array__(copy=True), getattr(made, own))
+        assert numpy.shares_memory(made.__array__(), getattr(made, own))
+        with pytest.raises(ValueError, match="without a copy"):
+            made.__array__(numpy.float64, copy=False)
+
+
+def test_tracks_of_missing_values():
+    pandas = pytest.importorskip("pandas")
+    for keys in (pandas.array([1, None, 2, 1], dtype="Int64"), [1, numpy.nan, 2, 1], ["a", None, "b", "a"]):
+        table = pandas.DataFrame({"x": pandas.array([1, 2, None, 4], dtype="Float64"), "y": [1.0, 2, 3, 4], "id": keys})
+        points, offsets = camber.tracks(table, by="id")
+        assert numpy.array_equal(points, [[1, 1], [4, 4], [numpy.nan, 3]], equal_nan=True) and offsets.tolist() == [0, 2, 3]
+    assert len(camber.tracks(table[1:2], by="id")[0]) == 0
+
+
+def test_a_map_gets_values_of_their_types(frame):
+    import io
+    import json
+    import pandas
+    from camber._map import write_frame
+    written = io.StringIO()
+    mixed = frame.assign(n=pandas.array([1, None, 3], dtype="Int64"), flag=[True, False, None], speed=[1.5, numpy.inf, 2],
+                         day=pandas.to_datetime(["2026-01-01", None, None]), bits=[numpy.zeros(2)] * 3)
+    mixed.insert(0, "kind", "none", allow_duplicates=True)
+    write_frame(mixed, written)
+    first, second, _ = [each["properties"] for each in json.loads(written.getvalue())["features"]]
+    assert first == {"n": 1, "flag": True, "speed": 1.5, "day": "2026-01-01 00:00:00", "bits": "[0. 0.]", "kind": "bus"}
+    assert [second[name] for name in ("n", "flag", "speed", "day", "kind")] == [None, False, None, None, None]

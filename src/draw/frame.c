@@ -3,6 +3,7 @@
 #include "draw/renderer.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 camber_status camber_renderer_resolve(camber_renderer *renderer, const camber_frame *frame) {
@@ -34,8 +35,18 @@ camber_status camber_renderer_render(camber_renderer *renderer, const camber_fra
     return render(renderer, frame, rows, user, NULL, stats);
 }
 
-/* Checks that a resolved frame can be summed: by a rasterizer that has sums, and only lines that are all of themselves.
- */
+/* Whether the rows of a command are opaque and have a finite red, which alone is added up. */
+static bool has_sums(const camber_draw_list *list, const camber_draw_command *command) {
+    for (size_t i = 0; i < command->mesh->row_count; i++) {
+        const camber_row_paint *row = list->rows + command->first_row + i;
+        const float alpha = camber_draw_command_alpha(command, row);
+        if (alpha >= 0.0f && !(alpha == 1.0f && isfinite(row->color.r)))
+            return false;
+    }
+    return true;
+}
+
+/* Checks that a resolved frame can be summed: by a rasterizer that has sums, and only opaque lines. */
 static camber_status check_sum(const camber_renderer *renderer, const camber_frame *frame) {
     camber_context *context = renderer->share.device->context;
     const unsigned wrong = CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE;
@@ -49,6 +60,9 @@ static camber_status check_sum(const camber_renderer *renderer, const camber_fra
         if (!command->mesh || command->composite != CAMBER_COMPOSITE_STRAIGHT || command->features & wrong)
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "a sum: a pass has a fill, an area, a ramp, an image or an alpha; give opaque lines");
+        if (!has_sums(&renderer->list, command))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "a sum: a paint has an alpha below 1 or a red that is not finite; give opaque paints");
     }
     return CAMBER_OK;
 }

@@ -621,12 +621,16 @@ static void test_sums_refused(void **state) {
     fill_summed(&s);
     float *sums = sum_on(e, renderer, &s, 0, 0);
     const camber_fill fill = {.color = {1, 0, 0, 1}};
-    summed wrong[] = {s, s, s, s};
+    summed wrong[] = {s, s, s, s, s, s, s};
     wrong[0].frame.background = (camber_color){1, 1, 1, 1};
     wrong[1].pass = (camber_pass){.kind = CAMBER_PASS_FILL, .fill = fill};
     wrong[2].pass.opacity = 0.5f;
     for (size_t i = 0; i < SUMMED; i++)
         wrong[3].paints[i].fill = &fill;
+    wrong[4].paints[SUMMED / 2].color.r = NAN;
+    wrong[5].paints[SUMMED / 2].color.r = -INFINITY;
+    wrong[6].paints[SUMMED / 2].color.a = 0.5f;
+    wrong[6].pass.overlap = CAMBER_OVERLAP_ACCUMULATE;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         wrong[i].frame.passes = &wrong[i].pass;
         wrong[i].pass.paints = wrong[i].paints;

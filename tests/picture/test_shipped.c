@@ -105,7 +105,7 @@ static const drawn_by layers[] = {
 };
 enum { LAYERS = sizeof layers / sizeof *layers };
 
-/* The same of lines of public transport. */
+/* The same of lines of public transport, and of the map below them. */
 static const thing lines[] = {
     {"subway", NULL, "mode=subway colour=#ff0000 tunnel=true"},
     {"tram", NULL, "mode=tram colour=green"},
@@ -115,10 +115,14 @@ static const thing lines[] = {
     {"bus", NULL, "mode=bus"},
     {"trolleybus", NULL, "mode=trolleybus"},
     {"ferry", NULL, "mode=ferry"},
+    {"river", NULL, "waterway=river"},
+    {"street", NULL, "highway=secondary"},
 };
 enum { LINES = sizeof lines / sizeof *lines };
 
 static const drawn_by line_layers[] = {
+    {"base-river", "river"},
+    {"base-street", "street"},
     {"ferry", "ferry"},
     {"bus-casing", "bus trolleybus"},
     {"bus", "bus trolleybus"},

@@ -225,7 +225,8 @@ static void tell_picture(void *owner, camber_status status) {
     if (w->failed_pictures < LOST_PICTURES)
         return;
     pthread_mutex_lock(&w->mutex);
-    w->lost = w->stop = true;
+    w->lost = true;
+    w->stop = true;
     pthread_cond_signal(&w->changed);
     pthread_mutex_unlock(&w->mutex);
 }

@@ -506,7 +506,7 @@ static bool check_color(maker *m, const json_t *properties, const char *name) {
 }
 
 static bool add_geojson_point(maker *m, const json_t *json, const json_t *properties) {
-    double position[2];
+    double position[2] = {0};
     mark made = MARK;
     text_look look = TEXT_LOOK;
     if (!add_position(m, json, position))

@@ -5,11 +5,13 @@
 import {execFileSync} from 'node:child_process';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
+import {fileURLToPath} from 'node:url';
 import {comparePictures, cornerAt, findPort, launchBrowser, PATIENCE_MS, skip, startServe} from './browser.mjs';
 
 const CENTER = [-122.0268, 36.9735]; // Santa Cruz
 const SEA = [-122.1, 36.952];          // near it, in the bounds of INPUT
-const town = join(import.meta.dirname, '../data/monaco/monaco.osm.pbf'), TOWN_CENTER = [7.4235, 43.7365], TOWN_ZOOM = 15;
+const town = fileURLToPath(new URL('../data/monaco/monaco.osm.pbf', import.meta.url));
+const TOWN_CENTER = [7.4235, 43.7365], TOWN_ZOOM = 15;
 const OFF_EDGES = 200; // pixels of lines that turn back outside a tile, which may differ by more than a level
 const DRAWN = ['--layer', 'roads']; // tiles of an archive would be served as they are
 const WIDE = {width: 1280, height: 720}, PHONE = {width: 360, height: 740};

@@ -651,9 +651,12 @@ int main(void) {
         cmocka_unit_test(test_covered),        cmocka_unit_test(test_covered_again),
     };
     int failed = 77;
+    char pocl_cache[64];
+    pocl_cache_apart(pocl_cache); /* kernels that are not saved are compiled for one size of work-groups */
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, NULL, NULL);
     else
         puts("skipped: no OpenCL device");
+    folder_remove(pocl_cache);
     return failed;
 }

@@ -97,7 +97,7 @@ cache=$XDG_CACHE_HOME/camber
 kernels=$(grep -l classify "$cache"/kernels-*) # those of a method; those of networks lie beside them
 [ -f "$kernels" ] || fail "the cache has not one file of kernels: $(ls -A "$cache")"
 cp "$kernels" "$tmp/whole.bin"
-XDG_CACHE_HOME=$tmp/other draw "$tmp/kite.png" --method kite
+XDG_CACHE_HOME=$tmp/other draw "$tmp/pitched.png" --pitch 30
 
 # ---- Folders that cannot be used ----
 
@@ -125,12 +125,12 @@ if mount --bind "$tmp/mount.ro" "$tmp/mount.ro" 2>/dev/null && mount -o remount,
     export XDG_CACHE_HOME=$tmp/mount.ro
     draws "a read-only folder that has the kernels"
     kernels_come_from "the cache"
-    right=$tmp/kite.png draws "a read-only folder that lacks the kernels" --method kite
+    right=$tmp/pitched.png draws "a read-only folder that lacks the kernels" --pitch 30
     umount "$tmp/mount.ro"
 elif [ "$(id -u)" != 0 ]; then
     chmod -R a-w "$tmp/mount.ro"
     XDG_CACHE_HOME=$tmp/mount.ro draws "a read-only folder that has the kernels"
-    XDG_CACHE_HOME=$tmp/mount.ro right=$tmp/kite.png draws "a read-only folder that lacks the kernels" --method kite
+    XDG_CACHE_HOME=$tmp/mount.ro right=$tmp/pitched.png draws "a read-only folder that lacks the kernels" --pitch 30
     chmod -R u+w "$tmp/mount.ro"
 else
     echo "skipped: a read-only folder: root without the right to mount one"
@@ -254,9 +254,11 @@ rmdir "$kernels"
 cp "$tmp/whole.bin" "$kernels"
 
 # Another method's kernels under this one's name are whole, and the wrong ones.
-draw kite.png --method kite
-draw fan.png --method fan
-rm -f kite.png fan.png
+for method in kite fan; do
+    "$tool" tessellate "$tmp/lines.geojson" -fqo mesh.glb --method "$method" 2>"$tmp/stderr" ||
+        fail "exit status $?: $(head -c 300 "$tmp/stderr")"
+done
+rm -f mesh.glb
 for other in $(grep -l classify "$cache"/kernels-*); do
     [ "$other" = "$kernels" ] && continue
     cp "$other" "$kernels"

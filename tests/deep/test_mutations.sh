@@ -327,8 +327,10 @@ mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (cam
 group='along lines: glyphs'
 mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \
     'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.0f)'
+drawer=(--draw cl) # GL draws halos by its shaders
 mutant strip kernels/tile_state.h "glyphs: halos shine through them" 'c->level[level][i][3][v] = through * (1.0f - area)' \
     'c->level[level][i][3][v] = through'
+drawer=()
 group='along lines'
 mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
 mutant strip kernels/features.h "a fade half as wide" '(blur + 1.0f)' '(0.5f * blur + 1.0f)'

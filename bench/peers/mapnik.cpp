@@ -1,5 +1,5 @@
 /* Mapnik's renderer over lines or areas in memory: a symbolizer as a style would have it, neither simplified nor
- * smoothed. */
+ * smoothed; by one thread, and by stripes, each a map of its own over the same lines. */
 #include "peers/labels.h"
 #include "peers/layers.h"
 #include "peers/peer.h"
@@ -23,6 +23,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -93,17 +94,20 @@ mapnik::rule make_rule(const bench_peer_frame &frame) {
     return rule;
 }
 
-mapnik::Map make_map(const bench_peer_frame &frame) {
-    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
+/* Of the rows [first, end). */
+mapnik::Map make_map(const bench_peer_frame &frame, const std::shared_ptr<mapnik::memory_datasource> &source, int first,
+                     int end) {
+    mapnik::Map map(BENCH_SIDE_PX, end - first, "epsg:3857");
     map.set_background(mapnik::color(255, 255, 255));
+    map.set_buffer_size(static_cast<int>(frame.width_px) + 1); /* lines beside the picture reach into it */
     mapnik::feature_type_style style;
     style.add_rule(make_rule(frame));
     map.insert_style("lines", std::move(style));
     mapnik::layer layer("lines", "epsg:3857");
-    layer.set_datasource(make_source(frame));
+    layer.set_datasource(source);
     layer.add_style("lines");
     map.add_layer(std::move(layer));
-    map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
+    map.zoom_to_box(mapnik::box2d<double>(0, BENCH_SIDE_PX - end, BENCH_SIDE_PX, BENCH_SIDE_PX - first));
     return map;
 }
 
@@ -119,7 +123,43 @@ double render(const mapnik::Map &map, uint8_t *rgba) {
 
 double draw(const bench_peer_frame *frame) {
     try {
-        return render(make_map(*frame), frame->rgba);
+        return render(make_map(*frame, make_source(*frame), 0, BENCH_SIDE_PX), frame->rgba);
+    } catch (const std::exception &) {
+        return -1;
+    }
+}
+
+struct stripe {
+    mapnik::Map map;
+    mapnik::image_rgba8 image;
+};
+
+bool draw_stripe(void *user, std::size_t part) {
+    stripe &one = (*static_cast<std::vector<stripe> *>(user))[part];
+    try {
+        one.image = mapnik::image_rgba8(BENCH_SIDE_PX, static_cast<int>(one.map.height()));
+        mapnik::agg_renderer<mapnik::image_rgba8> renderer(one.map, one.image);
+        renderer.apply();
+        return true;
+    } catch (const std::exception &) {
+        return false;
+    }
+}
+
+double draw_stripes(const bench_peer_frame *frame) {
+    try {
+        std::vector<stripe> stripes;
+        const auto source = make_source(*frame);
+        for (std::size_t i = 0; i < bench_stripe_count(); i++)
+            stripes.push_back(
+                {make_map(*frame, source, bench_stripe_first_row(i), bench_stripe_first_row(i + 1)), {}});
+        const double ms = bench_stripes_draw(draw_stripe, &stripes);
+        uint8_t *rgba = frame->rgba;
+        for (const stripe &one : stripes) {
+            std::memcpy(rgba, one.image.bytes(), one.image.size());
+            rgba += one.image.size();
+        }
+        return ms;
     } catch (const std::exception &) {
         return -1;
     }
@@ -264,4 +304,8 @@ extern "C" double bench_mapnik_labels(const bench_labels *labels, uint8_t *rgba)
     }
 }
 
-extern "C" const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "", version, build, draw};
+extern "C" {
+const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "one thread", version, build, draw};
+const bench_peer bench_peer_mapnik_stripes = {"mapnik_stripes", "Mapnik", "a stripe per thread",
+                                              version,          build,    draw_stripes};
+}

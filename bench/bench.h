@@ -201,7 +201,8 @@ extern const bench_section *const bench_sections[]; /* NULL behind the last */
 extern const bench_section bench_section_stages, bench_section_network, bench_section_frames, bench_section_zooms,
     bench_section_mosaic, bench_section_fly, bench_section_textures, bench_section_growth, bench_section_start,
     bench_section_encode, bench_section_read, bench_section_tiles, bench_section_serve, bench_section_areas,
-    bench_section_city, bench_section_labels, bench_section_many, bench_section_outside, bench_section_devices;
+    bench_section_city, bench_section_labels, bench_section_many, bench_section_outside, bench_section_devices,
+    bench_section_glyphs;
 
 json_t *bench_result_new(void);
 typedef camber_status bench_scene_fn(bench *b, const bench_scene *scene, void *user, json_t *result);

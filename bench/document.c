@@ -10,12 +10,13 @@
 #include "camber_map.h"
 #endif
 
-const bench_section *const bench_sections[] = {
-    &bench_section_stages,  &bench_section_network, &bench_section_frames,   &bench_section_areas,
-    &bench_section_devices, &bench_section_city,    &bench_section_labels,   &bench_section_zooms,
-    &bench_section_mosaic,  &bench_section_fly,     &bench_section_textures, &bench_section_growth,
-    &bench_section_start,   &bench_section_encode,  &bench_section_read,     &bench_section_tiles,
-    &bench_section_serve,   &bench_section_many,    &bench_section_outside,  NULL};
+const bench_section *const bench_sections[] = {&bench_section_stages,  &bench_section_network,  &bench_section_frames,
+                                               &bench_section_areas,   &bench_section_devices,  &bench_section_city,
+                                               &bench_section_labels,  &bench_section_zooms,    &bench_section_mosaic,
+                                               &bench_section_fly,     &bench_section_textures, &bench_section_growth,
+                                               &bench_section_start,   &bench_section_encode,   &bench_section_read,
+                                               &bench_section_tiles,   &bench_section_serve,    &bench_section_many,
+                                               &bench_section_outside, &bench_section_glyphs,   NULL};
 
 static json_t *describe_peers(void) {
     json_t *peers = json_object();

@@ -59,16 +59,17 @@ bool bench_is_avx2_only(const bench *b) {
     const char *target = kernels_for(&device);
     if (is_avx2_processor(target))
         return true;
-    fprintf(stderr,
-            "camber_bench: the kernels are compiled for %s; without CAMBER_CPU=none they are those of the back end cpu for "
-            "x86-64-v3, and POCL_KERNELLIB_NAME=avx2 makes PoCL 6 compile them for AVX2 (PoCL 3.1 has no such setting)\n",
-            target ? target : device.name);
+    fprintf(
+        stderr,
+        "camber_bench: the kernels are compiled for %s; without CAMBER_CPU=none they are those of the back end cpu for "
+        "x86-64-v3, and POCL_KERNELLIB_NAME=avx2 makes PoCL 6 compile them for AVX2 (PoCL 3.1 has no such setting)\n",
+        target ? target : device.name);
     return false;
 }
 
 static json_t *describe_environment(void) {
-    static const char *const names[] = {"CAMBER_CPU", "POCL_KERNELLIB_NAME", "POCL_LLVM_CPU_NAME", "POCL_AFFINITY", "GLIBC_TUNABLES",
-                                        "LP_NATIVE_VECTOR_WIDTH"};
+    static const char *const names[] = {"CAMBER_CPU",    "POCL_KERNELLIB_NAME", "POCL_LLVM_CPU_NAME",
+                                        "POCL_AFFINITY", "GLIBC_TUNABLES",      "LP_NATIVE_VECTOR_WIDTH"};
     json_t *environment = json_object();
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (getenv(names[i]))

@@ -160,8 +160,8 @@ static void print(const json_t *result, FILE *to) {
     fprintf(to,
             "Drawing in GL, %d x %d px, round joins, butt caps, black on white, ms. draw: clear, draw, finish; frame: "
             "from lines\nin memory to pixels in memory; .1: what lies closer than %g px is left out; united: draw .1, "
-            "all lines as one area.\nPeers: from lines to pixels in memory, and that time relative to camber's draw "
-            ".1.\n\n",
+            "all lines as one area.\nPeers: from lines to pixels in memory, and that time relative to camber's "
+            "frame.\n\n",
             BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX);
     print_table(result, in_gl, FRAME, to);
     fprintf(to, "\nDrawing in OpenCL, the same lines: cl, whole frames; frame: GL's. Peers: their time relative to cl "

@@ -1,6 +1,6 @@
 /* Reading OpenStreetMap's PBF files: points of lines a second, beside GDAL's reader in camber and beside libosmium in
- * this process, which finds the same lines' places and copies their tags. A city, and a country that camber_country makes up. The same
- * country as FlatGeobuf: the view of a city by the file's index, beside all of it. */
+ * this process, which finds the same lines' places and copies their tags. A city, and a country that camber_country
+ * makes up. The same country as FlatGeobuf: the view of a city by the file's index, beside all of it. */
 #include "bench.h"
 
 #include <stdlib.h>
@@ -67,9 +67,10 @@ static void measure_subject(bench *b, const subject *s, json_t *result) {
         return;
     const double ms = bench_series_median(&ours), gdal_ms = bench_series_median(&gdals),
                  osmium = osmiums.count ? bench_series_median(&osmiums) : 0;
-    bench_result_add_row(result, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o}", "key", s->key, "name", s->name, "points",
-                                           (json_int_t)points, "osmium_points", (json_int_t)osmium_points, "file_ms",
-                                           bench_ms(ms), "ogr_ms", bench_ms(gdal_ms), "osmium_ms", bench_ms(osmium)));
+    bench_result_add_row(result,
+                         json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o}", "key", s->key, "name", s->name, "points",
+                                   (json_int_t)points, "osmium_points", (json_int_t)osmium_points, "file_ms",
+                                   bench_ms(ms), "ogr_ms", bench_ms(gdal_ms), "osmium_ms", bench_ms(osmium)));
     bench_result_add_figure(result, &(bench_figure){s->key, "reading lines", "OGR", gdal_ms / ms, false});
     bench_result_add_figure(result, &(bench_figure){s->key, "reading lines", "libosmium", osmium / ms, false});
 }

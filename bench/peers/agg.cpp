@@ -1,5 +1,5 @@
-/* Anti-Grain Geometry: conv_stroke or rings into the scanline rasterizer, every part by itself or all of them in one; by
- * one thread, and by stripes. */
+/* Anti-Grain Geometry: conv_stroke or rings into the scanline rasterizer, every part by itself or all of them in one;
+ * by one thread, and by stripes. */
 #include "peers/peer.h"
 
 #include <agg_conv_stroke.h>
@@ -113,8 +113,8 @@ const char *build() {
 extern "C" {
 const bench_peer bench_peer_agg = {"agg", "AGG", "one thread, a line at a time", version, build, draw_lines};
 const bench_peer bench_peer_agg_path = {"agg_path", "AGG", "one thread, one path", version, build, draw_path};
-const bench_peer bench_peer_agg_stripes = {
-    "agg_stripes", "AGG", "a stripe per thread, a line at a time", version, build, draw_stripes<false>};
+const bench_peer bench_peer_agg_stripes = {"agg_stripes", "AGG", "a stripe per thread, a line at a time",
+                                           version,       build, draw_stripes<false>};
 const bench_peer bench_peer_agg_stripes_path = {
     "agg_stripes_path", "AGG", "a stripe per thread, one path", version, build, draw_stripes<true>};
 }

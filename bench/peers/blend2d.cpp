@@ -1,7 +1,7 @@
 /* Blend2D: every polyline stroked or every area filled by itself, or all of them as one path; by one thread, by
  * Blend2D's own threads, and by threads of the program, each of which draws a stripe of the picture. Contexts are kept
- * from frame to frame, as camber keeps its renderer; paths are made again in the memory of the frame before, as camber's
- * mesh is, or kept, too. */
+ * from frame to frame, as camber keeps its renderer; paths are made again in the memory of the frame before, as
+ * camber's mesh is, or kept, too. */
 #include "peers/peer.h"
 
 #include <blend2d/blend2d.h>
@@ -101,8 +101,8 @@ class painter {
             stripe &one = parts[i];
             one.first_row = by.stripes ? bench_stripe_first_row(i) : 0;
             const int end = by.stripes ? bench_stripe_first_row(i + 1) : BENCH_SIDE_PX;
-            uint8_t *rows = frame.rgba + static_cast<std::size_t>(4 * BENCH_SIDE_PX) *
-                                             static_cast<std::size_t>(one.first_row);
+            uint8_t *rows =
+                frame.rgba + static_cast<std::size_t>(4 * BENCH_SIDE_PX) * static_cast<std::size_t>(one.first_row);
             if (one.image.create_from_data(BENCH_SIDE_PX, end - one.first_row, BL_FORMAT_PRGB32, rows,
                                            4 * BENCH_SIDE_PX) != BL_SUCCESS ||
                 one.context.begin(one.image, create_info(frame, by.pool)) != BL_SUCCESS || !compile(one, frame))
@@ -222,10 +222,10 @@ const bench_peer bench_peer_blend2d_threads = {"blend2d_threads", "Blend2D", "it
                                                version,           build,     draw_threads};
 const bench_peer bench_peer_blend2d_threads_path = {
     "blend2d_threads_path", "Blend2D", "its threads, one path", version, build, draw_threads_path};
-const bench_peer bench_peer_blend2d_stripes = {
-    "blend2d_stripes", "Blend2D", "a stripe per thread, a line at a time", version, build, draw_stripes};
-const bench_peer bench_peer_blend2d_stripes_path = {"blend2d_stripes_path", "Blend2D", "a stripe per thread, one path",
-                                                    version,                build,     draw_stripes_path};
+const bench_peer bench_peer_blend2d_stripes = {"blend2d_stripes", "Blend2D", "a stripe per thread, a line at a time",
+                                               version,           build,     draw_stripes};
+const bench_peer bench_peer_blend2d_stripes_path = {
+    "blend2d_stripes_path", "Blend2D", "a stripe per thread, one path", version, build, draw_stripes_path};
 const bench_peer bench_peer_blend2d_stripes_kept = {
     "blend2d_stripes_kept", "Blend2D", "a stripe per thread, one path, kept", version, build, draw_stripes_kept};
 }

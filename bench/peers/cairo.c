@@ -87,7 +87,7 @@ static double draw_stripes_path(const bench_peer_frame *frame) {
 
 const bench_peer bench_peer_cairo = {"cairo", "Cairo", "one thread, a line at a time", version, build, draw_lines};
 const bench_peer bench_peer_cairo_path = {"cairo_path", "Cairo", "one thread, one path", version, build, draw_path};
-const bench_peer bench_peer_cairo_stripes = {
-    "cairo_stripes", "Cairo", "a stripe per thread, a line at a time", version, build, draw_stripes};
+const bench_peer bench_peer_cairo_stripes = {"cairo_stripes", "Cairo", "a stripe per thread, a line at a time",
+                                             version,         build,   draw_stripes};
 const bench_peer bench_peer_cairo_stripes_path = {
     "cairo_stripes_path", "Cairo", "a stripe per thread, one path", version, build, draw_stripes_path};

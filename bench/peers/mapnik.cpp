@@ -94,20 +94,17 @@ mapnik::rule make_rule(const bench_peer_frame &frame) {
     return rule;
 }
 
-/* Of the rows [first, end). */
-mapnik::Map make_map(const bench_peer_frame &frame, const std::shared_ptr<mapnik::memory_datasource> &source, int first,
-                     int end) {
-    mapnik::Map map(BENCH_SIDE_PX, end - first, "epsg:3857");
+mapnik::Map make_map(const bench_peer_frame &frame) {
+    mapnik::Map map(BENCH_SIDE_PX, BENCH_SIDE_PX, "epsg:3857");
     map.set_background(mapnik::color(255, 255, 255));
-    map.set_buffer_size(static_cast<int>(frame.width_px) + 1); /* lines beside the picture reach into it */
     mapnik::feature_type_style style;
     style.add_rule(make_rule(frame));
     map.insert_style("lines", std::move(style));
     mapnik::layer layer("lines", "epsg:3857");
-    layer.set_datasource(source);
+    layer.set_datasource(make_source(frame));
     layer.add_style("lines");
     map.add_layer(std::move(layer));
-    map.zoom_to_box(mapnik::box2d<double>(0, BENCH_SIDE_PX - end, BENCH_SIDE_PX, BENCH_SIDE_PX - first));
+    map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
     return map;
 }
 
@@ -123,11 +120,13 @@ double render(const mapnik::Map &map, uint8_t *rgba) {
 
 double draw(const bench_peer_frame *frame) {
     try {
-        return render(make_map(*frame, make_source(*frame), 0, BENCH_SIDE_PX), frame->rgba);
+        return render(make_map(*frame), frame->rgba);
     } catch (const std::exception &) {
         return -1;
     }
 }
+
+/* ---- Stripes ---- */
 
 struct stripe {
     mapnik::Map map;
@@ -146,26 +145,36 @@ bool draw_stripe(void *user, std::size_t part) {
     }
 }
 
+/* Each thread draws rows of the map, which is of the whole picture: a copy of it has the same layers' lines. Lines
+ * beside its rows reach into them by up to buffer_px. */
+double render_stripes(const mapnik::Map &map, int buffer_px, uint8_t *rgba) {
+    std::vector<stripe> stripes;
+    for (std::size_t i = 0; i < bench_stripe_count(); i++) {
+        const int first = bench_stripe_first_row(i), end = bench_stripe_first_row(i + 1);
+        stripes.push_back({map, {}});
+        stripes[i].map.resize(BENCH_SIDE_PX, end - first);
+        stripes[i].map.set_buffer_size(buffer_px);
+        stripes[i].map.zoom_to_box(mapnik::box2d<double>(0, BENCH_SIDE_PX - end, BENCH_SIDE_PX, BENCH_SIDE_PX - first));
+    }
+    const double ms = bench_stripes_draw(draw_stripe, &stripes);
+    for (const stripe &one : stripes) {
+        std::memcpy(rgba, one.image.bytes(), one.image.size());
+        rgba += one.image.size();
+    }
+    return ms;
+}
+
 double draw_stripes(const bench_peer_frame *frame) {
     try {
-        std::vector<stripe> stripes;
-        const auto source = make_source(*frame);
-        for (std::size_t i = 0; i < bench_stripe_count(); i++)
-            stripes.push_back(
-                {make_map(*frame, source, bench_stripe_first_row(i), bench_stripe_first_row(i + 1)), {}});
-        const double ms = bench_stripes_draw(draw_stripe, &stripes);
-        uint8_t *rgba = frame->rgba;
-        for (const stripe &one : stripes) {
-            std::memcpy(rgba, one.image.bytes(), one.image.size());
-            rgba += one.image.size();
-        }
-        return ms;
+        return render_stripes(make_map(*frame), static_cast<int>(frame->width_px) + 1, frame->rgba);
     } catch (const std::exception &) {
         return -1;
     }
 }
 
 /* ---- Layers of a style ---- */
+
+constexpr int LAYERS_BUFFER_PX = 64; /* no style has wider lines */
 
 mapnik::color color_of(const camber_color &color) {
     const auto level = [](float share) { return static_cast<uint8_t>(255 * share + 0.5f); };
@@ -290,7 +299,7 @@ extern "C" double bench_mapnik_layers(const bench_layer *layers, std::size_t cou
         for (std::size_t i = 0; i < count; i++)
             add_layer(map, layers[i], std::to_string(i));
         map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
-        return render(map, rgba);
+        return render_stripes(map, LAYERS_BUFFER_PX, rgba);
     } catch (const std::exception &) {
         return -1;
     }

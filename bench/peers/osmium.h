@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* Reads the ways that have one of the keys, with all of their tags and their points in world coordinates, as a map needs
- * them. Threads besides the caller decode blocks. Gives the milliseconds and how many points there are; below 0: the
- * file does not read. */
+/* Reads the ways that have one of the keys, with all of their tags and their points in world coordinates, as a map
+ * needs them. Threads besides the caller decode blocks. Gives the milliseconds and how many points there are; below 0:
+ * the file does not read. */
 double bench_osmium_read(const char *path, const char *const *keys, size_t key_count, size_t *points);
 
 #ifdef __cplusplus

@@ -71,11 +71,11 @@ int bench_stripe_first_row(size_t part);
  * milliseconds until all have ended; below 0: one has failed. */
 double bench_stripes_draw(bench_stripe_fn *draw, void *user);
 
-extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_cairo_stripes, bench_peer_cairo_stripes_path,
-    bench_peer_agg, bench_peer_agg_path, bench_peer_agg_stripes, bench_peer_agg_stripes_path, bench_peer_mapnik,
-    bench_peer_mapnik_stripes, bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads,
-    bench_peer_blend2d_threads_path, bench_peer_blend2d_stripes, bench_peer_blend2d_stripes_path,
-    bench_peer_blend2d_stripes_kept, bench_peer_thorvg, bench_peer_thorvg_threads;
+extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_cairo_stripes,
+    bench_peer_cairo_stripes_path, bench_peer_agg, bench_peer_agg_path, bench_peer_agg_stripes,
+    bench_peer_agg_stripes_path, bench_peer_mapnik, bench_peer_mapnik_stripes, bench_peer_blend2d,
+    bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path, bench_peer_blend2d_stripes,
+    bench_peer_blend2d_stripes_path, bench_peer_blend2d_stripes_kept, bench_peer_thorvg, bench_peer_thorvg_threads;
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
 
 #include "base/base.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -149,13 +150,13 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Frames: the table of README.md ---- */
 
-/* Camber's milliseconds in a scene: of each run one. */
+/* Puts camber's milliseconds in a scene: a number per run. */
 static void put_times(const page *p, const char *section, const char *scene) {
     for (size_t k = 0; k < p->run_count; k++)
         fprintf(p->to, "%s %.1f", k ? "," : "", bench_number(find_row(p->runs + k, section, scene), "cl_frame_ms"));
 }
 
-/* How many times that a library takes in its best way: of each run one. */
+/* Puts how many times that a library takes in its best way: a number per run. */
 static void put_ratios(const page *p, const char *section, const char *scene, const char *library) {
     for (size_t k = 0; k < p->run_count; k++) {
         const json_t *row = find_row(p->runs + k, section, scene);
@@ -292,6 +293,46 @@ static void put_frames(const page *p) {
     }
 }
 
+/* ---- Against each library ---- */
+
+/* Puts the least, the greatest and the geometric mean of how many times that a library takes in a section's scenes. */
+static void put_mean(const page *p, const run *r, const char *section, const char *library) {
+    double logarithms = 0, least = INFINITY, most = 0;
+    size_t i, count = 0;
+    const json_t *row;
+    json_array_foreach(rows_of(r, section), i, row) {
+        const double ratio = bench_best_peer(json_object_get(row, "peers"), library) / bench_number(row, "cl_frame_ms");
+        if (!(ratio > 0))
+            continue;
+        logarithms += log(ratio);
+        least = fmin(least, ratio);
+        most = fmax(most, ratio);
+        count++;
+    }
+    if (count > 0)
+        fprintf(p->to, " %.2f to %.2f, mean %.2f |", least, most, exp(logarithms / (double)count));
+    else
+        fputs(" - |", p->to);
+}
+
+static void put_means(const page *p) {
+    static const char *const sections[] = {"frames", "areas"}, *const names[] = {"lines", "areas"};
+    fputs("### Against each library\n\n| times as long as camber |", p->to);
+    for (size_t k = 0; k < p->run_count; k++)
+        for (size_t s = 0; s < 2; s++)
+            fprintf(p->to, " %s: %s |", code_of(p->runs + k), names[s]);
+    put_rule(1 + 2 * p->run_count, p->to);
+    for (size_t i = 0; i < p->library_count; i++) {
+        fprintf(p->to, "| %s |", bench_text(json_object_get(p->runs->peers, p->libraries[i]), "name"));
+        for (size_t k = 0; k < p->run_count; k++)
+            for (size_t s = 0; s < 2; s++)
+                put_mean(p, p->runs + k, sections[s], p->libraries[i]);
+        fputs("\n", p->to);
+    }
+    fputs("\nWhole frames of all scenes, each library in its best way in each. The mean is the geometric one.\n\n",
+          p->to);
+}
+
 /* ---- Frames with fewer points ---- */
 
 static void put_pair(const page *p, const json_t *row, const char *all, const char *simple) {
@@ -391,8 +432,8 @@ static void put_fly(const page *p) {
 
 /* ---- Areas: the table of docs/areas.md ---- */
 
-/* Of each run camber's milliseconds, and how many times that each library takes in its best way; after these its error
- * in the first run. */
+/* Puts camber's milliseconds of each run, and how many times that each library takes in its best way; after these its
+ * error in the first run. */
 static void put_areas_row(const page *p, const json_t *row) {
     const char *key = bench_text(row, "key");
     const json_t *peers = json_object_get(row, "peers");
@@ -552,6 +593,7 @@ static void put_measured(const page *p) {
         put_best_ways(p, p->runs + i, "areas", " For areas, ");
         put_dates(p, p->runs + i);
     }
+    put_means(p);
     put_simplified(p);
     put_tessellation(p);
     if (p->run_count > 1)

@@ -380,7 +380,7 @@ static const area_source area_sources[] = {
      .where = "landuse IS NOT NULL"},
     {.key = "houses", .name = "100,000 houses", .add = add_houses, .count = 100000},
     {.key = "island", .name = "an island", .add = add_island, .count = 1000000},
-    {.key = "glyphs", .name = "28,900 glyphs", .add = add_glyphs, .count = 28900, .apart = true},
+    {.key = "glyphs", .name = "21,316 glyphs", .add = add_glyphs, .count = 21316, .apart = true},
 };
 
 static bool make_areas(const bench *b, const area_source *from, bench_scene *scene) {

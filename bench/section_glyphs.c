@@ -1,4 +1,4 @@
-/* Small rings as text has them: a page of 28,900 rings of 40 edges, 12 px high, by kernels on one thread, beside
+/* Small rings as text has them: a page of 21,316 rings of 40 edges, 12 px high, by kernels on one thread, beside
  * FreeType's smooth rasterizer, whose outlines are kept and lie where they are drawn, so that it only rasterizes.
  * Camber makes its mesh of the rings again in each frame, and a picture of four bytes a pixel; FreeType's has one. */
 #include "bench.h"

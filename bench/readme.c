@@ -116,8 +116,8 @@ static void put_head(const page *p, const run *r) {
     if (r == p->runs)
         fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
                 bench_text(r->document, "sharing"));
-    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn.", bench_text(r->document, "date"),
-            bench_number(r->document, "runs"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long.",
+            bench_text(r->document, "date"), bench_number(r->document, "runs"));
 }
 
 /* A document may be put together: says which sections were measured on another day. */

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What src/gpu/cpu/keep.sh keeps: an object is compiled again if the text, the words or the compiler are others, and only
-# then. test_keep.sh SOURCE; the compiler is a script that counts.
+# src/gpu/cpu/keep.sh compiles an object again if the text, the words or the compiler are others, and only then:
+# test_keep.sh SOURCE. The compiler is a script that counts.
 set -eu
 keep=$1/src/gpu/cpu/keep.sh
 work=$(mktemp -d)

@@ -93,6 +93,11 @@ static const char *frames_date(const run *r) {
     return *own ? own : bench_text(r->document, "date");
 }
 
+/* What measured fewer scenes and runs is not passed off as a whole run. */
+static const char *size_of(const run *r) {
+    return strcmp(bench_text(r->document, "size"), "full") == 0 ? "" : ", not a full run";
+}
+
 /* "AVX2: AVX2 code (haswell) on that processor, ...": never as if it were a processor that has no more. */
 static void put_machine(const page *p, const run *r) {
     const char *processor = bench_text(r->machine, "processor"), *compiler = bench_text(r->machine, "compiler");
@@ -116,8 +121,8 @@ static void put_head(const page *p, const run *r) {
     if (r == p->runs)
         fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
                 bench_text(r->document, "sharing"));
-    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long.",
-            bench_text(r->document, "date"), bench_number(r->document, "runs"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long%s.",
+            bench_text(r->document, "date"), bench_number(r->document, "runs"), size_of(r));
 }
 
 /* A document may be put together: says which sections were measured on another day. */
@@ -292,7 +297,7 @@ static void put_frames(const page *p) {
         const run *r = p->runs + i;
         fputs("\n", p->to);
         put_machine(p, r);
-        fprintf(p->to, ", %.10s.", frames_date(r));
+        fprintf(p->to, ", %.10s%s.", frames_date(r), size_of(r));
         for (size_t k = 0; k < p->library_count && !has_same_peers(p, r); k++)
             put_peer(p, r, k);
         fputs("\n", p->to);
@@ -316,7 +321,7 @@ static void put_mean(const page *p, const run *r, const char *section, const cha
         count++;
     }
     if (count > 0)
-        fprintf(p->to, " %.2f to %.2f, mean %.2f |", least, most, exp(logarithms / (double)count));
+        fprintf(p->to, " %.2f to %.2f, %.2f |", least, most, exp(logarithms / (double)count));
     else
         fputs(" - |", p->to);
 }
@@ -335,7 +340,8 @@ static void put_means(const page *p) {
                 put_mean(p, p->runs + k, sections[s], p->libraries[i]);
         fputs("\n", p->to);
     }
-    fputs("\nWhole frames of all scenes, each library in its best way in each. The mean is the geometric one.\n\n",
+    fputs("\nWhole frames, each library in its best way in each scene: the least, the greatest, and the geometric "
+          "mean.\n\n",
           p->to);
 }
 

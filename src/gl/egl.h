@@ -38,7 +38,7 @@ typedef void *EGLDeviceEXT;
     X(const char *, QueryString, (EGLDisplay, EGLint))                                                                 \
     X(camber_function *, GetProcAddress, (const char *))
 
-/* Of extensions. */
+/* Functions of extensions. */
 typedef EGLDisplay camber_egl_get_platform_display_fn(EGLenum platform, void *native, const EGLint *attributes);
 typedef EGLBoolean camber_egl_query_devices_fn(EGLint capacity, EGLDeviceEXT *devices, EGLint *count);
 

@@ -71,7 +71,7 @@ def main(root, compiler):
         if not same:
             print(f"{path}: not what Khronos' headers say:\n" + said)
             status = 1
-        # What this test is for must be found: another value, and a function with one parameter more.
+        # The compiler must refuse what this test is for: another value, and a function with one parameter more.
         value = next(line for line in lines if "== (" in line)
         row = next(line for line in lines if "_Generic(&" in line and "(void)" not in line)
         for right, wrong in ((value, value.replace("== (", "== 1 + (")), (row, row.replace("): 1", ", char): 1"))):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the tool loads: no driver unless it is asked for, or needed; and what it says where there is none.
+# Traces which libraries the tool loads: no driver unless it is asked for, or needed; and reads its messages where none is here.
 # test_drivers.sh TOOL INPUT CPU, where CPU is 1 if the build has kernels for the processor itself.
 set -u
 tool=$1 input=$2 has_cpu=$3
@@ -41,6 +41,12 @@ if ls /dev/dri/renderD* /dev/nvidiactl /dev/dxg >/dev/null 2>&1; then
 elif [ "$has_cpu" = 1 ]; then
     traced own || fail "does not draw: $(cat own.told)"
     ! loads own || fail "drivers are loaded to draw on the processor"
+    for threads in 1 2 64; do
+        strace -f -qq -e trace=clone,clone3 -o "$threads.clones" "$tool" render "$input" -qfo "$threads.png" --size 256x256 \
+            --threads $threads || fail "does not draw with $threads threads"
+        cmp own.png $threads.png || fail "other bytes with $threads threads"
+    done
+    [ $(($(wc -l <64.clones) - $(wc -l <1.clones))) -ge 63 ] || fail "--threads is not the number of threads"
 fi
 # The same run with a device of OpenCL's loads it: the trace shows what is looked for.
 if CAMBER_CPU=none "$tool" info --json 2>/dev/null | grep -q '"version": "OpenCL'; then

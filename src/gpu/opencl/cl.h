@@ -35,7 +35,7 @@ typedef struct _cl_program *cl_program;
 typedef struct _cl_kernel *cl_kernel;
 typedef struct _cl_event *cl_event;
 
-/* What the driver calls. */
+/* Functions that the driver calls. */
 typedef void (*camber_cl_told)(const char *, const void *, size_t, void *);
 typedef void (*camber_cl_built)(cl_program, void *);
 

@@ -134,10 +134,10 @@ set(city_rails ${city_rails_heavy} ${city_rails_light} tram)
 
 # Other lines: their filters for OpenStreetMap's keys, and for layers of tiles.
 set(city_borders_tiles boundary boundaries)
-set(city_border_level_osm [=[["to-number", ["get", "admin_level"], 99]]=])
-set(city_border_level_boundary [=[["to-number", ["get", "admin_level"], 99]]=])
+set(city_border_level_osm [=[["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]=])
+set(city_border_level_boundary [=[["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]=])
 set(city_border_level_boundaries [=[["match", ["coalesce", ["get", "kind"], ["get", "pmap:kind"], ""], "country", 2, "region", 4,
-                ["to-number", ["get", "admin_level"], 99]]]=])
+                ["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]]=])
 set(city_ferry_osm [=[["==", ["get", "route"], "ferry"]]=])
 set(city_ferry_tiles transportation roads ferries transit)
 set(city_ferry_transportation [=[["==", ["get", "class"], "ferry"]]=])

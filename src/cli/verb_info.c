@@ -94,7 +94,7 @@ static void print_formats(const json_t *object) {
     const json_t *list = json_object_get(object, "formats");
     if (json_array_size(list) == 0) {
         printf("formats   polylines in pixels (%s)\n", json_object_get(object, "gdal")
-                                                           ? "GDAL cannot be loaded; reinstall camber and GDAL"
+                                                           ? "GDAL cannot be loaded; install it, and camber again"
                                                            : "this build reads no maps");
         return;
     }

@@ -631,11 +631,12 @@ LIBRARIES = {
 PACKAGINGS = (
     ("packaging/debian/control", None, 0), ("packaging/camber.spec", r"^Version: *(\S+)", 1),
     ("packaging/camber.rb", r"camber-([\d.]+)\.tar", 2), ("examples/serve/Dockerfile", None, 0),
+    ("packaging/recipe.yaml", r'^  version: "([\d.]+)"', None),
     ("packaging/debian/changelog", r"\Acamber \(([\d.]+)-", None),
     ("pyproject.toml", r'^version = "(.*)"', None), ("src/camber.3", r'^\.TH .* "camber (\S+)"', None),
     ("packaging/camber.spec", r"^\* .* - (\S+)-1$", None), ("src/cli/camber.1", r'^\.TH .* "camber (\S+)"', None))
 # Each package is made with the same options, and with all that can be left out.
-CONFIGURED = ("packaging/debian/rules", "packaging/camber.spec", "packaging/camber.rb")
+CONFIGURED = ("packaging/debian/rules", "packaging/camber.spec", "packaging/camber.rb", "packaging/recipe.yaml")
 
 
 def check_options(tree, cmake):

@@ -320,6 +320,7 @@ class Lint(unittest.TestCase):
                                          "* Wed Nov 25 2026 Someone <a@b> - 1.2.3-1\n",
                 "packaging/camber.rb": 'url "camber-1.2.3.tar.gz"\ndepends_on "gdal"\ndepends_on "jansson"\n'
                                        'depends_on "protobuf-c"\ndepends_on "mesa"\nsystem "-DCAMBER_WARM=OFF"\n',
+                "packaging/recipe.yaml": 'context:\n  version: "1.2.3"\nscript: cmake -DCAMBER_WARM=OFF\n',
                 "examples/serve/Dockerfile": "RUN apt-get install " + debian + "RUN cmake -DCAMBER_WARM=OFF\n",
                 "pyproject.toml": 'version = "1.2.3"\ndependencies = ["numpy"]\n', "src/camber.3": '.TH CAMBER 3 "x" "camber 1.2.3"\n',
                 "src/cli/camber.1": '.TH CAMBER 1 "x" "camber 1.2.3"\n'}.items():
@@ -328,8 +329,8 @@ class Lint(unittest.TestCase):
     def test_versions_of_packages(self):
         self.write_packages()
         self.assertEqual(list(lint_tree.check_packages(lint_tree.Tree(self.root))), [])
-        for path in ("packaging/debian/changelog", "packaging/camber.spec", "packaging/camber.rb", "pyproject.toml",
-                     "src/camber.3", "src/cli/camber.1"):
+        for path in ("packaging/debian/changelog", "packaging/camber.spec", "packaging/camber.rb", "packaging/recipe.yaml",
+                     "pyproject.toml", "src/camber.3", "src/cli/camber.1"):
             self.write_packages()
             with open(os.path.join(self.root, path), encoding="utf-8") as file:
                 self.write(path, file.read().replace("1.2.3", "1.2.4", 1))

@@ -376,7 +376,9 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
 
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features) {
     const size_t joined = features->stats.joined_pieces;
-    const camber_status status = finish(labels, features, features->schema->labels_directed);
+    camber_status status = camber_tile_stitcher_keep_largest(labels, features);
+    if (status == CAMBER_OK)
+        status = finish(labels, features, features->schema->labels_directed);
     features->stats.joined_pieces = joined;
     return status;
 }

@@ -177,28 +177,28 @@ set(city_zoom_apron 10)
 set(city_zoom_plaza 14)
 
 set(city_light_reserve  "#edf0df")
-set(city_light_built    "#f1ebe0")
+set(city_light_built    "#efe9de")
 set(city_light_commerce "#f3e7dd")
 set(city_light_industry "#ebe6de")
 set(city_light_campus   "#f3ead3")
 set(city_light_field    "#e9edd7")
-set(city_light_park     "#dae6c5")
-set(city_light_wood     "#c9dcb7")
+set(city_light_park     "#d5e6bf")
+set(city_light_wood     "#c1d9ad")
 set(city_light_sand     "#f4e7c6")
 set(city_light_rock     "#e4dfd6")
 set(city_light_wetland  "#d5e4d8")
 set(city_light_ice      "#eef5f7")
-set(city_light_pitch    "#cddfb8")
+set(city_light_pitch    "#c4e0b4")
 set(city_light_water    "#a6cfdd")
 set(city_light_pier     "#efe9dd")
 set(city_light_apron    "#e5e1d9")
 set(city_light_plaza    "#fbf8f1")
-set(city_light_building_far "#ede7dc")
-set(city_light_building "#e2d8c8")
-set(city_light_building_edge "#c9bca8")
+set(city_light_building_far "#e9e3d9")
+set(city_light_building "#e4dcd1")
+set(city_light_building_edge "#c6bbad")
 set(city_light_stream   "#9ac7d8")
-set(city_light_rail     "#9d948d")
-set(city_light_border   "#b39db3")
+set(city_light_rail     "#8b827c")
+set(city_light_border   "#a183a8")
 set(city_light_ferry    "#6d9db2")
 set(city_light_runway   "#dcd8d2")
 set(city_light_lift     "#8a8178")
@@ -320,9 +320,9 @@ set(city_template_border [=[
      "layout": {"line-join": "round", "line-round-limit": 1},
      "paint": {"line-color": "@BORDER@", "line-dasharray": ["step", @LEVEL@, ["literal", [7, 2]], 3, ["literal", [4, 2, 1, 2]]],
                "line-width": ["interpolate", ["exponential", 1.2], ["zoom"],
-                              4, ["step", @LEVEL@, 0.7, 3, 0], 8, ["step", @LEVEL@, 1, 3, 0.6, 5, 0],
-                              11.9, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0], 12, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0.5],
-                              18, ["step", @LEVEL@, 2.6, 3, 2, 5, 1.3]]}}]=])
+                              4, ["step", @LEVEL@, 0.8, 3, 0], 8, ["step", @LEVEL@, 1.5, 3, 0.7, 5, 0],
+                              11.9, ["step", @LEVEL@, 2, 3, 1, 5, 0], 12, ["step", @LEVEL@, 2, 3, 1, 5, 0.5],
+                              18, ["step", @LEVEL@, 3, 3, 2, 5, 1.3]]}}]=])
 set(city_template_ferry [=[
     {"id": "@ID@", "type": "line",@HEAD@
      "filter": ["all", @NO_AREA@, @TEST@],

@@ -95,10 +95,15 @@ function(camber_compile_level level)
     set(source ${PROJECT_SOURCE_DIR}/kernels/${CMAKE_MATCH_2}.cl)
     separate_arguments(options UNIX_COMMAND "${CMAKE_MATCH_3}")
     set(object ${CMAKE_CURRENT_BINARY_DIR}/cpu/${name}_${program}.o)
-    add_custom_command(OUTPUT ${object}
-      COMMAND ${CAMBER_CLANG} ${cpu_flags} ${flags} -DCAMBER_DEVICE=1 -DCAMBER_POINT_CHUNK=256 -DCAMBER_LANES=${lanes}
-              ${options} -DCAMBER_CPU_PROGRAM=camber_cpu_${name}_${program} -I${CMAKE_CURRENT_SOURCE_DIR}
-              -include ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h -MD -MF ${object}.d -c ${source} -o ${object}
+    set(compile ${CAMBER_CLANG} ${cpu_flags} ${flags} -DCAMBER_DEVICE=1 -DCAMBER_POINT_CHUNK=256 -DCAMBER_LANES=${lanes}
+        ${options} -DCAMBER_CPU_PROGRAM=camber_cpu_${name}_${program} -I${CMAKE_CURRENT_SOURCE_DIR}
+        -include ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h)
+    if(CMAKE_C_COMPILER_LAUNCHER MATCHES "ccache") # which takes no OpenCL C
+      set(compile sh ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/keep.sh ${source} ${object} ${compile})
+    else()
+      list(APPEND compile -MD -MF ${object}.d -c ${source} -o ${object})
+    endif()
+    add_custom_command(OUTPUT ${object} COMMAND ${compile}
       DEPENDS ${source} ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h DEPFILE ${object}.d
       COMMENT "Compiling the kernels of ${program} for ${name}" VERBATIM)
     list(APPEND cpu_objects ${object})

@@ -47,7 +47,7 @@ use() { # TREE
     # GDAL is not here: what it alone reads is refused, by name, and with what to do.
     echo '<gpx/>' >track.gpx
     camber render track.gpx -o track.png 2>log || status=$?
-    test "$status" = 74 && grep 'camber: track.gpx: .*none of libgdal.so.28 to libgdal.so.40 can be loaded; install it' log
+    test "$status" = 74 && grep 'camber: track.gpx: .*none of libgdal.so.32 to libgdal.so.40 can be loaded; install it' log
     python - "$tree" <<'PYTHON'
 import sys, numpy, camber
 t = numpy.linspace(0, 1, 200)

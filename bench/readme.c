@@ -260,6 +260,14 @@ static void put_best_ways(const page *p, const run *r, const char *section, cons
     fputs(*before == ';' ? "." : "", p->to);
 }
 
+/* Puts the columns of a table whose first one is of scenes. */
+static void put_columns(const page *p, const char *first) {
+    fputs(first, p->to);
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
+    put_rule(2 + p->library_count, p->to);
+}
+
 /* Explains "3.1/2.4". */
 static void put_codes(const page *p) {
     for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
@@ -275,10 +283,7 @@ static bool has_same_peers(const page *p, const run *r) {
 static void put_frames(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("| scene | camber: ms |", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
-    put_rule(2 + p->library_count, p->to);
+    put_columns(p, "| scene | camber: ms |");
     json_array_foreach(rows_of(p->runs, "frames"), i, row) {
         fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
         put_frame(p, "frames", row);
@@ -444,20 +449,12 @@ static void put_fly(const page *p) {
 
 /* ---- Areas: the table of docs/areas.md ---- */
 
-/* Puts camber's milliseconds of each run, and how many times that each library takes in its best way; after these its
- * error in the first run. */
-static void put_areas_row(const page *p, const json_t *row) {
-    const char *key = bench_text(row, "key");
+static void put_errors(const page *p, const json_t *row) {
     const json_t *peers = json_object_get(row, "peers");
-    fprintf(p->to, "| %s |", bench_text(row, "scene"));
-    put_count(bench_number(row, "edges"), p->to);
-    put_times(p, "areas", key);
-    fprintf(p->to, "; %.3f |", bench_number(row, "error"));
-    for (size_t k = 0; k < p->library_count; k++) {
-        put_ratios(p, "areas", key, p->libraries[k]);
-        fprintf(p->to, "; %.3f |",
+    fprintf(p->to, "| %s | %.3f |", bench_text(row, "scene"), bench_number(row, "error"));
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %.3f |",
                 bench_number(json_object_get(peers, bench_best_way(peers, p->libraries[k])), "error"));
-    }
     fputs("\n", p->to);
 }
 
@@ -488,14 +485,16 @@ static void put_glyphs(const page *p) {
 static void put_areas(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("| areas | edges | camber: ms |", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
-    put_rule(3 + p->library_count, p->to);
-    json_array_foreach(rows_of(p->runs, "areas"), i, row) put_areas_row(p, row);
+    put_columns(p, "| areas | camber: ms |");
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) {
+        fprintf(p->to, "| %s, %.0f edges |", bench_text(row, "scene"), bench_number(row, "edges"));
+        put_frame(p, "areas", row);
+    }
+    put_columns(p, "\n| error | camber |");
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) put_errors(p, row);
     fputs("\nFrames of 2048 x 2048 px, all areas black, from rings in memory to pixels in memory. Other columns: time "
-          "relative to camber, below 1 if they are faster, each library in its best way. After a semicolon: the mean "
-          "error beside 16 x 16 samples a pixel, of 255.",
+          "relative to camber, below 1 if they are faster, each library in its best way. Errors: the mean beside "
+          "16 x 16 samples a pixel, of 255.",
           p->to);
     put_codes(p);
     put_cities(p);

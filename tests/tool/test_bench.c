@@ -409,7 +409,7 @@ static void test_readme(void **state) {
     assert_non_null(strstr(text, " AVX2: kernels |"));
     assert_non_null(strstr(text, "<!-- /measured -->\n# tail\n"));
     publish("# head\n<!-- areas: made by ./dev bench --readme -->\nold\n<!-- /areas -->\n# tail\n", text, sizeof text);
-    assert_non_null(strstr(text, "\n| 100,000 houses | 4,000 | "));
+    assert_non_null(strstr(text, "\n| 100,000 houses, 4000 edges | "));
     assert_non_null(strstr(text, "<!-- /areas -->\n# tail\n"));
     write_text(README, "# head\n# tail\n");
     assert_int_equal(run("--readme '" MADE "' '" README "'"), 1);

@@ -194,10 +194,13 @@ CLONE
         echo 'cat /left && test ! -s /left && test -z "$(ls /tmp)"'
         ;;
     wheel)
-        echo 'apt-get install -y -qq --no-install-recommends python3-venv python3-numpy python3-cffi'
+        echo 'apt-get install -y -qq --no-install-recommends python3-venv python3-numpy python3-cffi ocl-icd-libopencl1'
         echo '! command -v gcc cc clang c++'
         echo 'useradd -m traveller && cp /checkout/tests/recipes/wheel.sh /home/traveller && chmod -R a+rX /checkout'
         echo 'su - traveller -c "bash wheel.sh use /checkout"'
+        if [ "$2" = bookworm ]; then
+            echo 'apt-get install -y -qq --no-install-recommends libgdal32 && su - traveller -c "bash wheel.sh gdal"'
+        fi
         # The build folder's tool drew the same; without one there is nothing to compare with.
         echo '[ ! -d /checkout/expected ] || for picture in /checkout/expected/*.png; do cmp "$picture" "/home/traveller/drawn/${picture##*/}"; done'
         ;;

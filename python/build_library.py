@@ -1,7 +1,8 @@
 """The extension camber._library: cffi reads the public headers, and the compiler checks its declarations.
 
 No declaration is copied, so after a change to a header the extension either follows it or does not build. The headers
-and libraries are those that pkg-config finds, or those of the build folder in CAMBER_BUILD and of its source tree.
+and libraries are those of the build folder in CAMBER_BUILD and of its source tree, or those that pkg-config finds, or
+else those that build_inside.py builds.
 """
 
 import os
@@ -11,6 +12,8 @@ import subprocess
 import sys
 
 from cffi import FFI
+
+import build_inside
 
 HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_text.h",
            "camber_map.h", "camber_tiles.h", "camber_print.h")
@@ -179,25 +182,27 @@ def pkg_config(*arguments):
 
 
 def locate():
-    """Returns (folder of the headers, folder of the libraries, whether the linker needs the latter as an option)."""
+    """Returns (folder of the headers, folder of the libraries, folders that the loader searches besides its own)."""
     build = os.environ.get("CAMBER_BUILD")
     if build:
         with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
             tree = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", file.read(), re.M).group(1)
-        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), False
+        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), []
+    if build_inside.is_wanted():
+        return "src", build_inside.LIBRARIES, [build_inside.RUN_PATH]
     libraries = pkg_config("--variable=libdir")
-    return pkg_config("--variable=includedir"), libraries, not libraries.startswith("/usr/lib")
+    return pkg_config("--variable=includedir"), libraries, [] if libraries.startswith("/usr/lib") else [libraries]
 
 
 def make_builder():
-    include, libraries, is_elsewhere = locate()
+    include, libraries, searched = locate()
     made = FFI()
     for name in HEADERS:
         with open(os.path.join(include, name), encoding="utf-8") as file:
             made.cdef(declarations(file.read()))
     made.cdef(re.sub(r"/\*.*?\*/", "", HELPERS) + ARROW + CALLBACKS)
     made.set_source("camber._library", ARROW + SOURCE, include_dirs=[include], library_dirs=[libraries],
-                    libraries=["camber-map", "camber"], runtime_library_dirs=[libraries] if is_elsewhere else [],
+                    libraries=["camber-map", "camber"], runtime_library_dirs=searched,
                     extra_compile_args=["-std=c11"])
     return made
 

@@ -1393,7 +1393,8 @@ def test_lost_device():
         print("test_lost_device: no library that fails: skipped")
         return
     write_map("map.json")
-    server = Server("map.json", wrapper=("env", f"LD_PRELOAD={os.environ['FAULT_CL']}", "CAMBER_FAULT=lost:lost"))
+    server = Server("map.json", wrapper=("env", f"LD_PRELOAD={os.environ['FAULT_CL']}", "CAMBER_FAULT=lost:lost",
+                                         "CAMBER_CPU=none"))
     path = "/%d/%d/%d.png"
     expect(server.get(path % (ZOOM, COLUMN, ROW))[0] == 200, "a tile before it is lost")
     with open("lost", "wb"):

@@ -20,6 +20,8 @@ import tempfile
 # The C library's; drivers' loaders; GDAL is the system's, in whichever version it is there.
 OF_THE_SYSTEM = re.compile(r"(ld-linux-.*|lib(c|m|dl|rt|pthread|OpenCL|EGL|GLESv2|gdal))\.so\.\d+$")
 
+EMBEDDED = "libjs-leaflet"  # in the tool: the page of camber serve
+
 
 def output(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
@@ -119,11 +121,13 @@ class Bundle:
         lines = ["The libraries in camber/lib besides libcamber's, each with the licence beside this file. They are Debian's, or",
                  "built of Debian's sources, unchanged: https://sources.debian.org/. Those under the LGPL may be replaced by others",
                  "of the same interface.", ""]
+        embedded = output("dpkg-query", "-W", "-f", "${Version}", EMBEDDED)
+        self.packages[EMBEDDED] = embedded, "/usr/share/doc/%s/copyright" % EMBEDDED
         for package, (version, licence) in sorted(self.packages.items()):
             shutil.copy(licence, os.path.join(folder, package + ".txt"))
             files = sorted(self.new_names[name] for name, source in self.sources.items()
                            if package_of(source, self.prefix)[0] == package)
-            lines.append("%s %s: %s" % (package, version, " ".join(files)))
+            lines.append("%s %s: %s" % (package, version, " ".join(files) or "in camber/bin/camber"))
         with open(os.path.join(folder, "LIBRARIES.txt"), "w", encoding="utf-8") as file:
             file.write("\n".join(lines) + "\n")
 

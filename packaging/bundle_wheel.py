@@ -118,6 +118,7 @@ class Bundle:
     def write_licences(self):
         folder = os.path.join(self.info, "licenses")
         os.makedirs(folder, exist_ok=True)
+        shutil.copy(os.path.join(os.path.dirname(__file__), "../src/text/fonts/OFL.txt"), folder)  # fonts, in libcamber-map
         lines = ["The libraries in camber/lib besides libcamber's, each with the licence beside this file. They are Debian's, or",
                  "built of Debian's sources, unchanged: https://sources.debian.org/. Those under the LGPL may be replaced by others",
                  "of the same interface.", ""]
@@ -138,6 +139,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "wheel", "unpack", "--dest", folder, wheel], check=True)
         root = glob.glob(os.path.join(folder, "*"))[0]
+        for tool in ("camber/bin/camber", "*.data/scripts/camber"):  # older versions of wheel forget it
+            os.chmod(glob.glob(os.path.join(root, tool))[0], 0o755)
         bundle = Bundle(root, prefix)
         bundle.run()
         tag = "manylinux_%d_%d_%s" % (*newest_glibc(bundle.elf_files()), os.uname().machine)

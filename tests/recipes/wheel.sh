@@ -38,6 +38,7 @@ use() { # TREE
     ! grep 'not found' needed
     ! grep -vE "^$package|^/home|=> $package|=> /lib/.*/lib(c|m|dl|rt|pthread|OpenCL)\.so|ld-linux|linux-vdso" needed
     test "$(ls "$package"/../camber-*.dist-info/licenses/*.txt | wc -l)" -gt 20
+    test -s "$(echo "$package"/../camber-*.dist-info/licenses/OFL.txt)"
     camber --version
     camber info | tee info
     grep 'kernels compiled ahead' info

@@ -24,7 +24,7 @@ apt-get install -y -qq -o Acquire::Retries=5 --no-install-recommends gcc g++ mak
     pkg-config file patchelf clang-16 python3-dev python3-distutils python3-cffi python3-wheel python3-pip \
     libpng-dev libwebp-dev libmeshoptimizer-dev libisal-dev liblz4-dev libzstd-dev liblzma-dev \
     libprotobuf-c-dev protobuf-c-compiler libsqlite3-dev zlib1g-dev libfribidi-dev libfontconfig1-dev libfreetype-dev \
-    libpixman-1-dev libjs-leaflet ocl-icd-opencl-dev opencl-c-headers libegl-dev libgles-dev
+    libpixman-1-dev libjs-leaflet
 mkdir -p /opt/parts && cd /opt/parts
 apt-get download -qq python3-setuptools/bookworm python3-pkg-resources/bookworm libgdal-dev/bookworm
 for part in *.deb; do dpkg -x "$part" .; done # of GDAL only the headers

@@ -31,7 +31,7 @@ STREETS = os.path.join(DATA, "santa_cruz", "tiger.mbtiles")
 WORDS = os.path.join(DATA, "styles", "words.json")
 IN_KERNELS = ["--draw", "cl", "--device", "camber", "-q"]
 
-# What is written, and of what. Levels draw every pixel by kernels; the rest of a run is the host's.
+# Each file that the tool writes, with its arguments. Kernels draw every pixel; the rest of a run is the host's.
 OUTPUTS = [
     ("monaco.png", ["render", MONACO, "--size", "700x500"]),
     ("dark.webp", ["render", MONACO, "--theme", "dark", "--bearing", "33", "--pitch", "55", "--size", "400x400",

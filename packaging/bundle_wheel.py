@@ -17,8 +17,8 @@ import subprocess
 import sys
 import tempfile
 
-# The C library's; drivers' loaders; GDAL is the system's, in whichever version it is there.
-OF_THE_SYSTEM = re.compile(r"(ld-linux-.*|lib(c|m|dl|rt|pthread|OpenCL|EGL|GLESv2|gdal))\.so\.\d+$")
+# The C library's; GDAL is the system's, in whichever version it is there. Drivers are loaded when they are asked for.
+OF_THE_SYSTEM = re.compile(r"(ld-linux-.*|lib(c|m|dl|rt|pthread|gdal))\.so\.\d+$")
 
 EMBEDDED = "libjs-leaflet"  # in the tool: the page of camber serve
 

@@ -140,8 +140,13 @@ typedef struct bench_peers_trial {
 /* How far b->pictured is from what a trial compares with. */
 typedef double bench_difference_fn(const bench *b, const void *user);
 
-/* Every peer draws a frame. Before frames count, their pictures are compared. Later, a way that took more than one and
- * a half times as long as its library's best one is left out, and that frame is its figure. */
+/* Whether a scene's frames go on with that run, the first of which only warm up: b->runs of them, but only three once
+ * they have taken BENCH_PATIENCE_MS. */
+#define BENCH_PATIENCE_MS 45e3
+bool bench_goes_on(const bench *b, size_t run, double begin_ms);
+
+/* Every peer draws a frame. Before frames count, their pictures are compared. Later, a way that took more than 1.3
+ * times as long as its library's best one is left out, and that frame is its figure. */
 void bench_peers_draw(const bench *b, bench_peers_trial *trial, const bench_scene *scene, bool counts,
                       bench_difference_fn *difference, const void *user);
 /* {"cairo": {"ms", what: how far its picture is, "alike"}, ...}. A peer whose picture is farther off than

@@ -198,6 +198,12 @@ double bench_peer_draw(const bench *b, const bench_peer *peer, const bench_scene
     return peer->draw(&frame);
 }
 
+bool bench_goes_on(const bench *b, size_t run, double begin_ms) {
+    enum { LEAST_RUNS = 3 };
+    const bool is_late = camber_now_ms() - begin_ms > BENCH_PATIENCE_MS;
+    return run < b->warm_ups + (is_late ? LEAST_RUNS : b->runs);
+}
+
 static bool is_alike(const bench_peers_trial *trial, size_t peer) {
     return trial->differences[peer] >= 0 && trial->differences[peer] <= BENCH_DIFFERENCE_MAX;
 }
@@ -210,7 +216,7 @@ static bool is_of_library(size_t peer, size_t other) {
 
 /* Whether another way of the library is so much faster that this one is not going to be its best. */
 static bool is_slow(const bench_peers_trial *trial, size_t peer) {
-    const double much = 1.5;
+    const double much = 1.3;
     for (size_t i = 0; i < bench_peer_count; i++)
         if (is_of_library(peer, i) && is_alike(trial, i) && trial->warm_ms[i] * much < trial->warm_ms[peer])
             return true;

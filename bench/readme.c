@@ -116,8 +116,8 @@ static void put_head(const page *p, const run *r) {
     if (r == p->runs)
         fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
                 bench_text(r->document, "sharing"));
-    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn.", bench_text(r->document, "date"),
-            bench_number(r->document, "runs"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long.",
+            bench_text(r->document, "date"), bench_number(r->document, "runs"));
 }
 
 /* A document may be put together: says which sections were measured on another day. */
@@ -153,7 +153,7 @@ static void put_count(double count, FILE *to) {
 /* Puts camber's milliseconds in a scene: a number per run. */
 static void put_times(const page *p, const char *section, const char *scene) {
     for (size_t k = 0; k < p->run_count; k++)
-        fprintf(p->to, "%s %.1f", k ? "," : "", bench_number(find_row(p->runs + k, section, scene), "cl_frame_ms"));
+        fprintf(p->to, "%s%.1f", k ? "/" : " ", bench_number(find_row(p->runs + k, section, scene), "cl_frame_ms"));
 }
 
 /* Puts how many times that a library takes in its best way: a number per run. */
@@ -162,7 +162,7 @@ static void put_ratios(const page *p, const char *section, const char *scene, co
         const json_t *row = find_row(p->runs + k, section, scene);
         const double ms = bench_best_peer(json_object_get(row, "peers"), library);
         const double ratio = ms / bench_number(row, "cl_frame_ms");
-        fputs(k ? ", " : " ", p->to);
+        fputs(k ? "/" : " ", p->to);
         if (ms > 0)
             fprintf(p->to, "%.*f", ratio < 2 ? 2 : 1, ratio);
         else
@@ -255,6 +255,13 @@ static void put_best_ways(const page *p, const run *r, const char *section, cons
     fputs(*before == ';' ? "." : "", p->to);
 }
 
+/* Explains "3.1/2.4". */
+static void put_codes(const page *p) {
+    for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
+        fprintf(p->to, "%s%s", k ? "/" : " Pairs: ", code_of(p->runs + k));
+    fputs(p->run_count > 1 ? " code." : "", p->to);
+}
+
 /* Whether a run has the peers of the first one, built alike. */
 static bool has_same_peers(const page *p, const run *r) {
     return r != p->runs && json_equal(r->peers, p->runs->peers);
@@ -279,9 +286,8 @@ static void put_frames(const page *p) {
             "\nFrames of %d x %d px on all cores, every point, from lines or rings in memory to pixels in memory. "
             "Others: time relative to camber, below 1 if they are faster, each in its [best way](docs/performance.md).",
             BENCH_SIDE_PX, BENCH_SIDE_PX);
-    for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
-        fprintf(p->to, "%s %s", k ? ", then" : " First", code_of(p->runs + k));
-    fputs(p->run_count > 1 ? " code.\n" : "\n", p->to);
+    put_codes(p);
+    fputs("\n", p->to);
     for (i = 0; i < p->run_count; i++) {
         const run *r = p->runs + i;
         fputs("\n", p->to);
@@ -485,9 +491,7 @@ static void put_areas(const page *p) {
           "relative to camber, below 1 if they are faster, each library in its best way. After a semicolon: the mean "
           "error beside 16 x 16 samples a pixel, of 255.",
           p->to);
-    for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
-        fprintf(p->to, "%s %s", k ? ", then" : " First", code_of(p->runs + k));
-    fputs(p->run_count > 1 ? " code." : "", p->to);
+    put_codes(p);
     put_cities(p);
     put_glyphs(p);
     for (size_t k = 0; k < p->run_count; k++) {

@@ -2,6 +2,8 @@
  * every peer, in turn in one run. Each picture is held against 16 x 16 samples of every pixel. */
 #include "bench.h"
 
+#include "base/base.h"
+
 #include "validate/oracle.h"
 
 #include <math.h>
@@ -73,8 +75,9 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *r
         t.truth && camber_oracle_fill(&scene->lines, CAMBER_ORACLE_NONZERO, BENCH_SIDE_PX, BENCH_SIDE_PX, t.truth)
             ? CAMBER_OK
             : CAMBER_ERROR_MEMORY;
+    const double begin_ms = camber_now_ms();
     /* In turn, so that a machine whose speed drifts is fair to all. */
-    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+    for (size_t run = 0; bench_goes_on(b, run, begin_ms) && status == CAMBER_OK; run++) {
         status = draw_ours(&t, run >= b->warm_ups);
         bench_peers_draw(b, &t.peers, scene, run >= b->warm_ups, peer_error, t.truth);
     }

@@ -1,6 +1,8 @@
 /* A frame of every scene, and the same polylines drawn by every peer, in turn in one run. */
 #include "bench.h"
 
+#include "base/base.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,8 +104,9 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, void *use
     (void)user;
     trial t = {.b = b, .scene = scene};
     camber_status status = bench_network_of_lines(b, &scene->lines, &t.network);
+    const double begin_ms = camber_now_ms();
     /* In turn, so that a machine whose speed drifts is fair to all. */
-    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+    for (size_t run = 0; bench_goes_on(b, run, begin_ms) && status == CAMBER_OK; run++) {
         status = draw_ours(&t, run >= b->warm_ups);
         bench_peers_draw(b, &t.peers, scene, run >= b->warm_ups, peer_difference, NULL);
     }

@@ -3,12 +3,13 @@
 #
 # Runs as root in a fresh Debian 11, whose C library (2.31) is as old as that of any Linux of the last five years;
 # tests/recipes/recipes.sh makes one, which ./dev wheel calls. Debian 11 has clang 16, which compiles the kernels. Its
-# HarfBuzz, libdeflate and libmicrohttpd are too old, and its Cairo wants X11: these four are built here, of Debian 12's sources.
-# They are kept in LIBRARIES_FOLDER for the next time. setuptools, which is Python only, is Debian 12's.
+# HarfBuzz, jansson, libdeflate and libmicrohttpd are too old, and its Cairo wants X11: these are built here, of
+# Debian 12's sources, and kept in LIBRARIES_FOLDER for the next time. setuptools, which is Python only, and GDAL's headers are
+# Debian 12's.
 set -eux
 tree=$1 out=$2
 prefix=$3/$(sed -n '/^begin()/,/^cd /p' "$0" | sha256sum | cut -c 1-12) # other recipes, other libraries
-gdal="28;29;30;31;32;33;34;35;36;37;38;39;40" # 3.2, which Debian 11 has, to 3.14
+gdal="32;33;34;35;36;37;38;39;40" # 3.6, which Debian 12 has, to 3.14
 export LD_LIBRARY_PATH=$prefix/lib PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 
 cat >/etc/apt/sources.list <<'LIST'
@@ -21,11 +22,11 @@ printf 'Package: *\nPin: release n=bookworm\nPin-Priority: 1\n' >/etc/apt/prefer
 apt-get update -qq -o Acquire::Check-Valid-Until=false
 apt-get install -y -qq -o Acquire::Retries=5 --no-install-recommends gcc g++ make libc6-dev dpkg-dev cmake ninja-build \
     pkg-config file patchelf clang-16 python3-dev python3-distutils python3-cffi python3-wheel python3-pip \
-    libpng-dev libwebp-dev libmeshoptimizer-dev libisal-dev liblz4-dev libzstd-dev liblzma-dev libjansson-dev \
+    libpng-dev libwebp-dev libmeshoptimizer-dev libisal-dev liblz4-dev libzstd-dev liblzma-dev \
     libprotobuf-c-dev protobuf-c-compiler libsqlite3-dev zlib1g-dev libfribidi-dev libfontconfig1-dev libfreetype-dev \
-    libpixman-1-dev libjs-leaflet ocl-icd-opencl-dev opencl-c-headers libegl-dev libgles-dev
+    libpixman-1-dev libjs-leaflet
 mkdir -p /opt/parts && cd /opt/parts
-apt-get download -qq python3-setuptools/bookworm python3-pkg-resources/bookworm libgdal-dev/bullseye
+apt-get download -qq python3-setuptools/bookworm python3-pkg-resources/bookworm libgdal-dev/bookworm
 for part in *.deb; do dpkg -x "$part" .; done # of GDAL only the headers
 export PYTHONPATH=/opt/parts/usr/lib/python3/dist-packages
 
@@ -74,6 +75,13 @@ if ! has libdeflate; then
     make -s -j "$(nproc)" PREFIX="$prefix" install
     end libdeflate
 fi
+if ! has jansson; then
+    begin jansson
+    cmake -S . -B made -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_BUILD_TYPE=Release \
+        -DJANSSON_BUILD_SHARED_LIBS=ON -DJANSSON_BUILD_DOCS=OFF -DJANSSON_WITHOUT_TESTS=ON -DJANSSON_EXAMPLES=OFF
+    cmake --build made --target install
+    end libjansson
+fi
 if ! has libmicrohttpd; then
     begin libmicrohttpd
     set_times
@@ -87,7 +95,7 @@ cd "$tree"
 python3 setup.py -q sdist -d "$tree/from" # the wheel is built of the archive, in a folder whose name ccache knows
 tar -C from -xf from/camber-*.tar.gz
 cd from/camber-*/
-CMAKE_ARGS="-DCAMBER_CLANG=/usr/bin/clang-16 -DCAMBER_CPU=ON '-DCAMBER_GDAL_SONAMES=$gdal'
+CMAKE_ARGS="-DCAMBER_CLANG=/usr/bin/clang-16 -DCAMBER_CPU=ON -DCMAKE_SHARED_LINKER_FLAGS=-Wl,-z,defs '-DCAMBER_GDAL_SONAMES=$gdal'
     -DCAMBER_GDAL_HEADERS=/opt/parts/usr/include/gdal -DCAMBER_LIBDEFLATE=ON -DCAMBER_WEBP=ON -DCAMBER_SERVE=ON
     -DCAMBER_LZ4=ON -DCAMBER_ZSTD=ON -DCAMBER_LZMA=ON -DCAMBER_CAIRO=ON" \
     PYTHONPATH=python:$PYTHONPATH python3 -c 'import backend; backend.build_wheel("..")' # as pip does

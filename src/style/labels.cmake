@@ -21,7 +21,7 @@ set(label_zoom_halt 14)
 set(label_zoom_sight 15)
 set(label_zoom_shop 16)
 set(label_zoom_station 12.5)
-set(label_zoom_peak 12)
+set(label_zoom_peak 11)
 set(label_zoom_pond 16)
 set(label_zoom_lake 12)
 set(label_zoom_sea 7)
@@ -81,7 +81,6 @@ set(label_font_shield "Noto Sans Bold")
 set(label_font_shield_secondary "Noto Sans Bold")
 set(label_font_quarter "Noto Sans Bold")
 set(label_font_suburb "Noto Sans Bold")
-set(label_font_station "Noto Sans Bold")
 set(label_font_city "Noto Sans Bold")
 set(label_font_capital "Noto Sans Bold")
 
@@ -203,7 +202,7 @@ set(label_has_ref "[\">\", [\"length\", ${label_ref}], 0]")
 # Filters that use OpenStreetMap's keys. Many places are both a point and an area; the point is where the name belongs.
 set(label_road "${osm_class}")
 set(label_point "[\"==\", [\"geometry-type\"], \"Point\"]")
-match_any(label_osm_street_small "${label_road}" ${way_values_path} ${way_values_steps} ${way_values_track}
+match_any(label_osm_street_small "${label_road}" ${way_values_footway} ${way_values_path} ${way_values_steps} ${way_values_track}
           ${road_values_service} ${road_values_pedestrian})
 match_any(label_osm_street "${label_road}" ${road_values_minor})
 match_any(label_osm_street_main "${label_road}" ${road_values_tertiary} ${road_values_secondary} ${road_values_primary}

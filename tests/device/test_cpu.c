@@ -86,6 +86,7 @@ static void test_pool(void **state) {
     run_pool(9, 1000);
     run_pool(9, 3);
     run_pool(9, 0);
+    run_pool(64, 1000);
     camber_cpu_pool_destroy(NULL);
 }
 

@@ -163,13 +163,13 @@ CLONE
         echo 'cmake --install build && ldconfig && camber --version'
         ;;
     packages)
-        echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb pocl-opencl-icd gcc libc6-dev pkg-config curl'
-        echo 'ls /usr/lib/*/camber-kernels/*.bin >/root/here/kernels && test ! -e /root/.cache'
+        echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb gcc libc6-dev pkg-config curl'
+        echo '! ls /usr/lib/*/lib*OpenCL* /usr/lib/*/camber-kernels/*.bin && test ! -e /root/.cache' # nothing is compiled
         # The system as it is now: each file of camber's packages, and a moment that is later than all other files.
         echo "dpkg -L \$(dpkg-query -W -f '\${Package}\\n' '*camber*') | sort -u >/files && grep -q /camber /files"
         echo 'while read -r file; do [ -d "$file" ] || echo "$file"; done </files >/owned && sleep 1 && touch /moment'
         # The tool, C, Python, the server. What they keep for their user goes with the folder.
-        echo 'export POCL_CACHE_DIR=/root/here/pocl XDG_CACHE_HOME=/root/here/cache'
+        echo 'export XDG_CACHE_HOME=/root/here/cache'
         block build | grep '^camber ' | sed 's|tests/data|/checkout/tests/data|'
         echo 'od -An -c -N4 city.png | grep -q "P   N   G"'
         echo 'gcc /checkout/examples/hello.c -o hello $(pkg-config --cflags --libs camber) -lm && ./hello'
@@ -194,10 +194,13 @@ CLONE
         echo 'cat /left && test ! -s /left && test -z "$(ls /tmp)"'
         ;;
     wheel)
-        echo 'apt-get install -y -qq --no-install-recommends python3-venv python3-numpy python3-cffi'
+        echo 'apt-get install -y -qq --no-install-recommends python3-venv python3-numpy python3-cffi ocl-icd-libopencl1'
         echo '! command -v gcc cc clang c++'
         echo 'useradd -m traveller && cp /checkout/tests/recipes/wheel.sh /home/traveller && chmod -R a+rX /checkout'
         echo 'su - traveller -c "bash wheel.sh use /checkout"'
+        if [ "$2" = bookworm ]; then
+            echo 'apt-get install -y -qq --no-install-recommends libgdal32 && su - traveller -c "bash wheel.sh gdal"'
+        fi
         # The build folder's tool drew the same; without one there is nothing to compare with.
         echo '[ ! -d /checkout/expected ] || for picture in /checkout/expected/*.png; do cmp "$picture" "/home/traveller/drawn/${picture##*/}"; done'
         ;;

@@ -2,6 +2,7 @@
 # A user of the wheel: installs it, uses all of it, and draws pictures that are compared with those of the build folder.
 #
 #   wheel.sh draw CAMBER TREE FOLDER     pictures by a tool, of the map of Monaco, of tiles and of GeoJSON, with labels
+#   wheel.sh gdal                        afterwards, with GDAL in the system, draws what GDAL alone reads
 #   wheel.sh use TREE                    installs TREE/dist/camber-*.whl, without a compiler, and uses all of it here
 set -eux
 action=$1
@@ -31,11 +32,11 @@ use() { # TREE
     . env/bin/activate
     pip -q install --no-index --disable-pip-version-check "$tree"/dist/camber-*.whl
     package=$(python -c 'import importlib.util, os; print(os.path.dirname(importlib.util.find_spec("camber").origin))')
-    # Everything comes from the wheel but the C library.
+    # Everything comes from the wheel but the C library, and the loader of OpenCL's drivers.
     find "$package" -name '*.so*' ! -name 'camber-gdal-*' -exec ldd {} + >needed
     ldd "$package/bin/camber" >>needed
     ! grep 'not found' needed
-    ! grep -vE "^$package|^/home|=> $package|=> /lib/.*/lib(c|m|dl|rt|pthread)\.so|ld-linux|linux-vdso" needed
+    ! grep -vE "^$package|^/home|=> $package|=> /lib/.*/lib(c|m|dl|rt|pthread|OpenCL)\.so|ld-linux|linux-vdso" needed
     test "$(ls "$package"/../camber-*.dist-info/licenses/*.txt | wc -l)" -gt 20
     camber --version
     camber info | tee info
@@ -47,7 +48,7 @@ use() { # TREE
     # GDAL is not here: what it alone reads is refused, by name, and with what to do.
     echo '<gpx/>' >track.gpx
     camber render track.gpx -o track.png 2>log || status=$?
-    test "$status" = 74 && grep 'camber: track.gpx: .*none of libgdal.so.28 to libgdal.so.40 can be loaded; install it' log
+    test "$status" = 74 && grep 'camber: track.gpx: .*none of libgdal.so.32 to libgdal.so.40 can be loaded; install it' log
     python - "$tree" <<'PYTHON'
 import sys, numpy, camber
 t = numpy.linspace(0, 1, 200)
@@ -59,6 +60,16 @@ city = camber.render(sys.argv[1] + "/tests/data/monaco/monaco.osm.pbf", center=(
 open("module.png", "wb").write(camber.encode(city, "png"))
 PYTHON
     cmp module.png monaco.png
+}
+
+gdal() {
+    . env/bin/activate
+    cat >track.gpx <<'GPX'
+<gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg><trkpt lon="7.41" lat="43.73"/>
+<trkpt lon="7.42" lat="43.735"/></trkseg></trk></gpx>
+GPX
+    camber render track.gpx -o track.png && od -An -c -N4 track.png | grep 'P   N   G'
+    camber info | grep 'GDAL  *GDAL 3'
 }
 
 "$action" "$@"

@@ -360,19 +360,19 @@ static void check_table(const char *text) {
     const char *key, *at = strstr(text, "\n| long walks, 8 px | ");
     int way = 0;
     assert_non_null(at);
-    at = strstr(at, ", 10.0 |");
+    at = strstr(at, "/10.0 |");
     assert_non_null(at);
     json_object_foreach(json_object_get(document, "peers"), key, peer) {
         char column[32];
         way++;
         if (strchr(key, '_'))
             continue;
-        snprintf(column, sizeof column, ", %.*f |", way < 2 ? 2 : 1, (double)way);
+        snprintf(column, sizeof column, "/%.*f |", way < 2 ? 2 : 1, (double)way);
         at += strlen(" |");
-        assert_int_equal(strncmp(at + strcspn(at, ",\n"), column, strlen(column)), 0);
+        assert_int_equal(strncmp(at + strcspn(at, "/\n"), column, strlen(column)), 0);
         at = strstr(at, column) + strlen(column) - strlen(" |");
     }
-    assert_non_null(strstr(text, "First AVX-512, then AVX2 code."));
+    assert_non_null(strstr(text, "/AVX2 code."));
     assert_non_null(strstr(text, "\nAVX2: AVX2 code (haswell) on that processor, "));
     json_decref(document);
 }

@@ -110,9 +110,7 @@ static const char *text_of(const json_t *object, const char *key) {
 static void print_formats(const json_t *object) {
     const json_t *list = json_object_get(object, "formats");
     if (json_array_size(list) == 0) {
-        printf("formats   polylines in pixels (%s)\n", json_object_get(object, "gdal")
-                                                           ? "GDAL cannot be loaded; install it, and camber again"
-                                                           : "this build reads no maps");
+        puts("formats   polylines in pixels (this build reads no maps)");
         return;
     }
     size_t column = 100;
@@ -168,8 +166,10 @@ static void print_text(const json_t *object) {
     else
         printf("sharing   %s, between %s and %s\n", text_of(object, "sharing"), text_of(object, "device"),
                text_of(object, "gl_renderer"));
-    if (json_object_get(object, "gdal"))
-        printf("GDAL      %s\n", text_of(object, "gdal"));
+    const json_t *gdal = json_object_get(object, "gdal");
+    if (gdal)
+        printf("GDAL      %s\n", json_is_null(gdal) ? "none: install it (Debian: gdal-bin) to read more formats"
+                                                    : json_string_value(gdal));
     print_formats(object);
 }
 

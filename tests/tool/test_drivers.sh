@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Traces which libraries the tool loads: no driver unless it is asked for, or needed; and reads its messages where none is here.
-# test_drivers.sh TOOL INPUT CPU, where CPU is 1 if the build has kernels for the processor itself.
+# test_drivers.sh TOOL INPUT CPU [LIBRARY]: CPU is 1 if the build has kernels for the processor itself; LIBRARY has only
+# one function of OpenCL's.
 set -u
-tool=$1 input=$2 has_cpu=$3
+tool=$1 input=$2 has_cpu=$3 part=${4:-}
 unset LD_PRELOAD CAMBER_CPU CAMBER_COMPILATIONS # users do not know of them
 command -v strace >/dev/null && strace -o /dev/null true 2>/dev/null ||
     { echo "skipped: no strace, or it may not look at processes"; exit 77; }
@@ -40,6 +41,7 @@ if ls /dev/dri/renderD* /dev/nvidiactl /dev/dxg >/dev/null 2>&1; then
     echo "a GPU may be here, so drivers are asked: what a run without loads is not looked at"
 elif [ "$has_cpu" = 1 ]; then
     traced own || fail "does not draw: $(cat own.told)"
+    grep -q 'libcamber' own.trace || fail "the trace names no files"
     ! loads own || fail "drivers are loaded to draw on the processor"
     for threads in 1 2 64; do
         strace -f -qq -e trace=clone,clone3 -o "$threads.clones" "$tool" render "$input" -qfo "$threads.png" --size 256x256 \
@@ -80,6 +82,10 @@ if [ "$has_cpu" = 1 ]; then
     grep -Eq "^device +camber " told || fail "info names no device: $(cat told)"
     grep -Eq "^OpenCL +not available: .*$opencl" told || fail "info does not say how to get OpenCL: $(cat told)"
     grep -Eq '^GL +egl: not available: .*install libegl1' told || fail "info does not say how to get GL: $(cat told)"
+fi
+if [ -n "$part" ]; then
+    cp "$part" none/libOpenCL.so.1
+    fails 'no device: OpenCL \(libOpenCL\.so\.1\) lacks functions of version 1\.2; install' env CAMBER_CPU=none "$tool" render "$input" -fo a.png
 fi
 [ ! -e a.png ] || fail "a picture is left"
 echo "no drivers are loaded unasked"

@@ -37,10 +37,12 @@ static void add_devices(camber_session *session, json_t *object) {
         json_object_set_new(object, "devices_error", take_error(session->report, status));
 }
 
-/* Adds why no device is OpenCL's, if none is although there are others: it is loaded only when it is asked for. */
+/* Adds why no device is OpenCL's, if that is so: listing the others is no error. */
 static void add_opencl(camber_session *session, json_t *object) {
     const json_t *list = json_object_get(object, "devices"), *entry;
     size_t i;
+    if (json_object_get(object, "devices_error"))
+        return; /* it would be the same error */
     json_array_foreach(list, i, entry) {
         const char *version = json_string_value(json_object_get(entry, "version"));
         if (version && strncmp(version, "OpenCL", strlen("OpenCL")) == 0)
@@ -48,7 +50,7 @@ static void add_opencl(camber_session *session, json_t *object) {
     }
     const camber_device_desc desc = {.match = "opencl"};
     camber_device *device = NULL;
-    const camber_status status = i > 0 ? camber_device_create(session->context, &desc, &device) : CAMBER_OK;
+    const camber_status status = camber_device_create(session->context, &desc, &device);
     camber_device_destroy(device);
     if (status != CAMBER_OK)
         json_object_set_new(object, "opencl_error", take_error(session->report, status));
@@ -146,7 +148,7 @@ static void print_text(const json_t *object) {
         printf("device    none: %s\n",
                json_object_get(object, "devices_error")
                    ? text_of(object, "devices_error")
-                   : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
+                   : "no device here; install a driver of OpenCL, or build camber where clang is");
     if (json_object_get(object, "opencl_error"))
         printf("OpenCL    not available: %s\n", text_of(object, "opencl_error"));
     json_array_foreach(json_object_get(object, "backends"), i, entry) {

@@ -73,6 +73,8 @@ done
 export LD_LIBRARY_PATH=$folder/none${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 opencl='OpenCL is not installed \(libOpenCL\.so\.1\); install ocl-icd-libopencl1 and a driver .*pocl-opencl-icd'
 fails "no device: $opencl" env CAMBER_CPU=none "$tool" render "$input" -fo a.png
+CAMBER_CPU=none "$tool" info >told 2>&1 || fail "info without devices: $(cat told)"
+grep -Eq "^device +none" told && grep -Eq "^OpenCL +not available: no device: $opencl" told || fail "info without devices says $(cat told)"
 if [ "$has_cpu" = 1 ]; then
     "$tool" render "$input" -qfo bare.png --size 256x256 || fail "does not draw without drivers"
     [ ! -f own.png ] || cmp own.png bare.png || fail "other bytes without drivers"

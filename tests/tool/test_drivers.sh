@@ -37,8 +37,12 @@ grep -q 'libcamber' linked || fail "ldd sees no libraries: $(cat linked)"
 
 # ---- Loaded ----
 
-if ls /dev/dri/renderD* /dev/nvidiactl /dev/dxg >/dev/null 2>&1; then
-    echo "a GPU may be here, so drivers are asked: what a run without loads is not looked at"
+gpu=
+for file in /dev/dri/renderD* /dev/{nvidiactl,nvhost-gpu,dxg,mali0,kgsl-3d0,pvrsrvkm,galcore}; do # as src/gpu/hardware.c has them
+    [ ! -r "$file" ] || gpu=$file
+done
+if [ -n "$gpu" ]; then
+    echo "a GPU may be here ($gpu), so drivers are asked: what is loaded without one is not looked at"
 elif [ "$has_cpu" = 1 ]; then
     traced own || fail "does not draw: $(cat own.told)"
     grep -q 'libcamber' own.trace || fail "the trace names no files"

@@ -118,6 +118,8 @@ foreach(kind street_small street street_main)
   set(label_layout_${kind} "${label_along}\"symbol-spacing\": 100, ")
   set(label_repeat_${kind} 320)
 endforeach()
+string(REPLACE "\"text-max-angle\": 40, \"text-padding\": 4" "\"text-max-angle\": 60, \"text-padding\": 2" label_layout_street_main
+       "${label_layout_street_main}")
 set(label_repeat_halt 100)
 set(label_layout_shield "\"symbol-placement\": \"line\", \"symbol-spacing\": 600, \"text-rotation-alignment\": \"viewport\",
                 \"icon-image\": \"box\", \"icon-text-fit\": \"both\", \"icon-text-fit-padding\": [0, 2.5, 0, 2.5],

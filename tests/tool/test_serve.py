@@ -8,8 +8,8 @@ standard library alone; strace where it is there. Exit status 1: the first failu
 server.
 """
 
-import gzip
 import concurrent.futures
+import gzip
 import http.client
 import json
 import math
@@ -226,8 +226,8 @@ def write_sprite(name, width, height, rgba):
 
 
 def check_large_sprite():
-    """One picture with icons of a sprite that decodes to 68 MB is drawn, and of several at once some are told to come again."""
-    write_sprite("icons/large", 4100, 4150, (*GREEN, 255))
+    """One picture with icons of a sprite that decodes to 64 MB is drawn, and of several at once some are told to come again."""
+    write_sprite("icons/large", 4096, 4096, (*GREEN, 255))
     server = Server("map.json", "--icons", "icons/large")
     path = "/static/0.5,40.5,8/400x400.png" + overlay(("marker", "0.5,40.5|flag.png|scale:0.1"))
     with concurrent.futures.ThreadPoolExecutor(8) as pool:

@@ -172,7 +172,7 @@ static bool cycle_opencl(void) {
     const size_t count = 64;
     cl_platform_id platform;
     cl_device_id id;
-    cl_int code = camber_cl_load() ? camber_cl.GetPlatformIDs(1, &platform, NULL) : CL_DEVICE_NOT_FOUND;
+    cl_int code = camber_cl_load() ? CL_DEVICE_NOT_FOUND : camber_cl.GetPlatformIDs(1, &platform, NULL);
     if (code != CL_SUCCESS || camber_cl.GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, NULL) != CL_SUCCESS)
         return false;
     cl_context context = camber_cl.CreateContext(NULL, 1, &id, NULL, NULL, &code);

@@ -319,7 +319,7 @@ def test_overlay_errors():
             ("path", "fill:|1,2|3,4", "fill"), ("path", "color:red|1,2|3,4", "its options"), ("path", "enc:~~~~~~~~~~", "encoded"),
             ("path", "enc:_p~iF", "half a point"), ("path", "enc:\x01", "encoded"), ("path", "1,2|3,4" + "|5,6" * 900, None),
             ("marker", "1", "LON,LAT"), ("marker", "1,2|x.png", "pin and dot"), ("marker", "1,2|pin|scale:0", "scale"),
-            ("marker", "1,2|pin|offset:1", "offset"), ("marker", "1,2|pin|dot", "pin and dot"), ("marker", "1,2|pin|x:1", "options"),
+            ("marker", "1,2|pin|offset:1", "offset"), ("marker", "1,2|pin|dot", "its icon comes first"), ("marker", "1,2|pin|x:1", "options"),
             ("text", "1,2", "no words"), ("text", "1,2|", "no words"), ("text", "1,2|x|size:1e9", "size"), ("text", "1,2|x|y", "NAME:VALUE"),
             ("text", "1,2|x|anchor:up", "anchor"), ("text", "1,2|" + "x" * 501, "500 bytes"), ("linecap", "flat", "linecap"),
             ("linejoin", "x", "linejoin"), ("padding", "-1", "padding"), ("maxzoom", "25", "maxzoom"), ("stroke", "nocolour", "stroke")):

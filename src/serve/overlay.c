@@ -880,7 +880,7 @@ int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons
     camber_overlay_icons *made = calloc(1, sizeof *made);
     if (made && (made->sprite = strdup(sprite)))
         made->names = json_load_file(list, JSON_REJECT_DUPLICATES, NULL);
-    if (json_object_size(made ? made->names : NULL)) {
+    if (made && json_object_size(made->names)) {
         const size_t plain = measure_sheet(sprite, ".png"), dense = measure_sheet(sprite, "@2x.png");
         made->sheet_bytes = plain > dense ? plain : dense;
         *icons = made;

@@ -128,6 +128,35 @@ bench_yardstick bench_yardstick_measure(bench *b);
 /* The peer's frame in b->pictured: milliseconds, below 0 where it failed. */
 double bench_peer_draw(const bench *b, const bench_peer *peer, const bench_scene *scene);
 
+enum { BENCH_PEERS_MAX = 24 };
+
+/* Every peer's frames of a scene. */
+typedef struct bench_peers_trial {
+    bench_series ms[BENCH_PEERS_MAX];
+    double warm_ms[BENCH_PEERS_MAX];     /* the last of the frames that do not count; below 0: it failed */
+    double differences[BENCH_PEERS_MAX]; /* from the truth, or from camber's picture, of 255; below 0: it failed */
+} bench_peers_trial;
+
+/* How far b->pictured is from what a trial compares with. */
+typedef double bench_difference_fn(const bench *b, const void *user);
+
+/* Whether a scene's frames go on with that run, the first of which only warm up: b->runs of them, but only three once
+ * they have taken BENCH_PATIENCE_MS. */
+#define BENCH_PATIENCE_MS 45e3
+bool bench_goes_on(const bench *b, size_t run, double begin_ms);
+
+/* Every peer draws a frame. Before frames count, their pictures are compared. Later, a way that took more than 1.3
+ * times as long as its library's best one is left out, and that frame is its figure. */
+void bench_peers_draw(const bench *b, bench_peers_trial *trial, const bench_scene *scene, bool counts,
+                      bench_difference_fn *difference, const void *user);
+/* {"cairo": {"ms", what: how far its picture is, "alike"}, ...}. A peer whose picture is farther off than
+ * BENCH_DIFFERENCE_MAX draws something else and counts for nothing, which is printed. */
+json_t *bench_peers_report(const bench_peers_trial *trial, const bench_scene *scene, const char *what);
+
+/* Mean difference, of 255, over the pixels that either draws on. On Porto those that draw line over line come to 1.3,
+ * those that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
+#define BENCH_DIFFERENCE_MAX 20.0
+
 /* ---- machine.c ---- */
 
 /* Whether the kernels are compiled for a processor with AVX2 and no more; says it where they are not. */
@@ -177,7 +206,8 @@ extern const bench_section *const bench_sections[]; /* NULL behind the last */
 extern const bench_section bench_section_stages, bench_section_network, bench_section_frames, bench_section_zooms,
     bench_section_mosaic, bench_section_fly, bench_section_textures, bench_section_growth, bench_section_start,
     bench_section_encode, bench_section_read, bench_section_tiles, bench_section_serve, bench_section_areas,
-    bench_section_city, bench_section_labels, bench_section_many, bench_section_outside, bench_section_devices;
+    bench_section_city, bench_section_labels, bench_section_many, bench_section_outside, bench_section_devices,
+    bench_section_glyphs;
 
 json_t *bench_result_new(void);
 typedef camber_status bench_scene_fn(bench *b, const bench_scene *scene, void *user, json_t *result);
@@ -220,8 +250,8 @@ json_t *bench_document_load(const char *path);
 /* Copies of a document the rows that tables show and all figures. The document may be such a copy. */
 json_t *bench_document_keep(const json_t *document);
 bool bench_document_write(const json_t *document, const char *path);
-/* Every section measured, or the one of that name, and what on; each is printed as it comes. */
-json_t *bench_document_make(bench *b, const char *section);
+/* Every section measured, or those of a list, "frames,areas:houses", and what on; each is printed as it comes. */
+json_t *bench_document_make(bench *b, const char *list);
 void bench_document_print(const json_t *document, FILE *to);
 /* SVG of the mosaic's curve; false: there is none, or gnuplot is not there, which is said. */
 bool bench_plot_mosaic(const json_t *document, const char *path);

@@ -89,26 +89,26 @@ static double copy_on_device(const bench *b) {
     cl_command_queue queue = opencl_of(b->device)->queue;
     const size_t size_bytes = DEVICE_BLOCK_BYTES;
     cl_int code = CL_SUCCESS;
-    cl_mem from = clCreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
+    cl_mem from = camber_cl.CreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
     cl_mem to = code == CL_SUCCESS
-                    ? clCreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code)
+                    ? camber_cl.CreateBuffer(opencl_of(b->device)->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code)
                     : NULL;
     double best = 0;
     for (int i = 0; i < RUNS && code == CL_SUCCESS; i++) {
-        code = clFinish(queue);
+        code = camber_cl.Finish(queue);
         const double begin = camber_now_ms();
         for (int k = 0; k < REPEATS && code == CL_SUCCESS; k++)
-            code = clEnqueueCopyBuffer(queue, from, to, 0, 0, size_bytes, 0, NULL, NULL);
+            code = camber_cl.EnqueueCopyBuffer(queue, from, to, 0, 0, size_bytes, 0, NULL, NULL);
         if (code == CL_SUCCESS)
-            code = clFinish(queue);
+            code = camber_cl.Finish(queue);
         const double ms = camber_now_ms() - begin;
         if (code == CL_SUCCESS && i > 0) /* the first makes the buffers */
             best = fmax(best, 2.0 * REPEATS * (double)size_bytes / ms / 1e6);
     }
     if (to)
-        clReleaseMemObject(to);
+        camber_cl.ReleaseMemObject(to);
     if (from)
-        clReleaseMemObject(from);
+        camber_cl.ReleaseMemObject(from);
     return best;
 }
 

@@ -10,12 +10,13 @@
 #include "camber_map.h"
 #endif
 
-const bench_section *const bench_sections[] = {
-    &bench_section_stages,  &bench_section_network, &bench_section_frames,   &bench_section_areas,
-    &bench_section_devices, &bench_section_city,    &bench_section_labels,   &bench_section_zooms,
-    &bench_section_mosaic,  &bench_section_fly,     &bench_section_textures, &bench_section_growth,
-    &bench_section_start,   &bench_section_encode,  &bench_section_read,     &bench_section_tiles,
-    &bench_section_serve,   &bench_section_many,    &bench_section_outside,  NULL};
+const bench_section *const bench_sections[] = {&bench_section_stages,  &bench_section_network,  &bench_section_frames,
+                                               &bench_section_areas,   &bench_section_devices,  &bench_section_city,
+                                               &bench_section_labels,  &bench_section_zooms,    &bench_section_mosaic,
+                                               &bench_section_fly,     &bench_section_textures, &bench_section_growth,
+                                               &bench_section_start,   &bench_section_encode,   &bench_section_read,
+                                               &bench_section_tiles,   &bench_section_serve,    &bench_section_many,
+                                               &bench_section_outside, &bench_section_glyphs,   NULL};
 
 static json_t *describe_peers(void) {
     json_t *peers = json_object();
@@ -67,7 +68,7 @@ static void print_head(const json_t *document, FILE *to) {
     json_t *peer;
     json_object_foreach(json_object_get(document, "peers"), key, peer) if (!strchr(key, '_'))
         fprintf(to, " %s %s (%s);", bench_text(peer, "name"), bench_text(peer, "version"), bench_text(peer, "build"));
-    fprintf(to, " one thread each, but where it says threads. Medians of %.0f runs, in turn.\n",
+    fprintf(to, " each by one thread and by as many as there are cores. Medians of %.0f runs, in turn.\n",
             bench_number(document, "runs"));
 }
 
@@ -87,20 +88,34 @@ void bench_document_print(const json_t *document, FILE *to) {
         print_section(document, bench_sections[i], to);
 }
 
-json_t *bench_document_make(bench *b, const char *section) {
+/* Whether a section is among "frames,areas:houses", or nothing is named. Gives its item; "": all. */
+static bool is_wanted(const char *list, const char *name, char *item, size_t size) {
+    const size_t length = strlen(name);
+    *item = 0;
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        const size_t whole = strcspn(at, ",");
+        if (strncmp(at, name, length) != 0 || !strchr(":,", at[length]))
+            continue;
+        if (at[length] == ':')
+            snprintf(item, size, "%.*s", (int)(whole - length - 1), at + length + 1);
+        return true;
+    }
+    return !list;
+}
+
+json_t *bench_document_make(bench *b, const char *list) {
     json_t *document = describe(b), *sections = json_object();
-    const char *colon = section ? strchr(section, ':') : NULL;
-    const size_t size = colon ? (size_t)(colon - section) : section ? strlen(section) : 0;
+    char item[64];
     const double begin = camber_now_ms();
     json_object_set_new(document, "sections", sections);
     print_head(document, stdout);
     if (*bench_peers_missing)
         printf("Not built in: %s\n", bench_peers_missing);
     for (size_t i = 0; bench_sections[i]; i++) {
-        if (section && (strncmp(section, bench_sections[i]->name, size) != 0 || bench_sections[i]->name[size]))
+        if (!is_wanted(list, bench_sections[i]->name, item, sizeof item))
             continue;
         const double start = camber_now_ms();
-        json_t *result = bench_sections[i]->measure(b, colon ? colon + 1 : NULL);
+        json_t *result = bench_sections[i]->measure(b, *item ? item : NULL);
         if (!result) {
             fprintf(stderr, "camber_bench: %s could not be measured\n", bench_sections[i]->name);
             json_decref(document);

@@ -198,6 +198,62 @@ double bench_peer_draw(const bench *b, const bench_peer *peer, const bench_scene
     return peer->draw(&frame);
 }
 
+bool bench_goes_on(const bench *b, size_t run, double begin_ms) {
+    enum { LEAST_RUNS = 3 };
+    const bool is_late = camber_now_ms() - begin_ms > BENCH_PATIENCE_MS;
+    return run < b->warm_ups + (is_late ? LEAST_RUNS : b->runs);
+}
+
+static bool is_alike(const bench_peers_trial *trial, size_t peer) {
+    return trial->differences[peer] >= 0 && trial->differences[peer] <= BENCH_DIFFERENCE_MAX;
+}
+
+static bool is_of_library(size_t peer, size_t other) {
+    const size_t length = strcspn(bench_peers[peer]->key, "_");
+    return strcspn(bench_peers[other]->key, "_") == length &&
+           strncmp(bench_peers[peer]->key, bench_peers[other]->key, length) == 0;
+}
+
+/* Whether another way of the library is so much faster that this one is not going to be its best. */
+static bool is_slow(const bench_peers_trial *trial, size_t peer) {
+    const double much = 1.3;
+    for (size_t i = 0; i < bench_peer_count; i++)
+        if (is_of_library(peer, i) && is_alike(trial, i) && trial->warm_ms[i] * much < trial->warm_ms[peer])
+            return true;
+    return false;
+}
+
+void bench_peers_draw(const bench *b, bench_peers_trial *trial, const bench_scene *scene, bool counts,
+                      bench_difference_fn *difference, const void *user) {
+    for (size_t i = 0; i < bench_peer_count && i < BENCH_PEERS_MAX; i++) {
+        if (counts && (trial->warm_ms[i] < 0 || is_slow(trial, i))) {
+            if (trial->ms[i].count == 0 && trial->warm_ms[i] >= 0)
+                bench_series_add(&trial->ms[i], trial->warm_ms[i]);
+            continue;
+        }
+        const double ms = bench_peer_draw(b, bench_peers[i], scene);
+        if (!counts) {
+            trial->warm_ms[i] = ms;
+            trial->differences[i] = ms >= 0 ? difference(b, user) : -1;
+        } else if (ms >= 0) {
+            bench_series_add(&trial->ms[i], ms);
+        }
+    }
+}
+
+json_t *bench_peers_report(const bench_peers_trial *trial, const bench_scene *scene, const char *what) {
+    json_t *peers = json_object();
+    for (size_t i = 0; i < bench_peer_count && i < BENCH_PEERS_MAX; i++) {
+        if (!is_alike(trial, i))
+            fprintf(stderr, "camber_bench: %s on %s does not count: its picture is off by %.0f of 255\n",
+                    bench_peers[i]->key, scene->name, trial->differences[i]);
+        json_object_set_new(peers, bench_peers[i]->key,
+                            json_pack("{s:o, s:f, s:b}", "ms", bench_ms(bench_series_median(&trial->ms[i])), what,
+                                      trial->differences[i], "alike", is_alike(trial, i)));
+    }
+    return peers;
+}
+
 /* ---- The yardstick ---- */
 
 bench_yardstick bench_yardstick_measure(bench *b) {

@@ -18,6 +18,7 @@ static const struct {
     {"network", " key simplify_px m_points_s "},
     {"frames", " key scene width_px frame_ms simple_frame_ms cl_frame_ms cl_simple_frame_ms peers ms alike "},
     {"areas", " key scene edges error cl_frame_ms peers ms alike "},
+    {"glyphs", " key rings million_ms freetype_ms version "},
     {"city", " scene cl_frame_ms mapnik_ms "},
     {"fly", " by city frames width height frame scene tessellate draw read p50_ms p99_ms "},
     {"textures", " scene width_px rows_ms zero_copy_ms copy_ms gl_ms "},

@@ -37,15 +37,17 @@ static const char *read_vectors(void) {
     return strstr(flags, " avx512f") ? "AVX-512" : strstr(flags, " avx2") ? "AVX2" : "other vectors";
 }
 
-/* PoCL's version ends with the processor that it compiles for: "... HSTR: cpu-x86_64-pc-linux-gnu-haswell". NULL: this
- * is not PoCL's. */
+/* The processor that kernels are compiled for. The back end cpu has one in its name: "camber x86-64-v4". PoCL's version
+ * ends with it: "... HSTR: cpu-x86_64-pc-linux-gnu-haswell". NULL: that is not known. */
 static const char *kernels_for(const camber_device_info *device) {
     const char *target = strstr(device->version, "-gnu-");
+    if (device->fixed_kernels)
+        return strchr(device->name, ' ') ? strchr(device->name, ' ') + 1 : NULL;
     return strstr(device->version, "HSTR: ") && target ? target + strlen("-gnu-") : NULL;
 }
 
 static bool is_avx2_processor(const char *name) {
-    static const char *const names[] = {"haswell", "broadwell", "skylake", "znver1", "znver2", "znver3"};
+    static const char *const names[] = {"x86-64-v3", "haswell", "broadwell", "skylake", "znver1", "znver2", "znver3"};
     for (size_t i = 0; name && i < sizeof names / sizeof *names; i++)
         if (strcmp(name, names[i]) == 0)
             return true;
@@ -57,16 +59,17 @@ bool bench_is_avx2_only(const bench *b) {
     const char *target = kernels_for(&device);
     if (is_avx2_processor(target))
         return true;
-    fprintf(stderr,
-            "camber_bench: the kernels are compiled for %s; POCL_KERNELLIB_NAME=avx2 makes PoCL 6 compile them for "
-            "AVX2 (PoCL 3.1 has no such setting)\n",
-            target ? target : device.name);
+    fprintf(
+        stderr,
+        "camber_bench: the kernels are compiled for %s; without CAMBER_CPU=none they are those of the back end cpu for "
+        "x86-64-v3, and POCL_KERNELLIB_NAME=avx2 makes PoCL 6 compile them for AVX2 (PoCL 3.1 has no such setting)\n",
+        target ? target : device.name);
     return false;
 }
 
 static json_t *describe_environment(void) {
-    static const char *const names[] = {"POCL_KERNELLIB_NAME", "POCL_LLVM_CPU_NAME", "POCL_AFFINITY", "GLIBC_TUNABLES",
-                                        "LP_NATIVE_VECTOR_WIDTH"};
+    static const char *const names[] = {"CAMBER_CPU",    "POCL_KERNELLIB_NAME", "POCL_LLVM_CPU_NAME",
+                                        "POCL_AFFINITY", "GLIBC_TUNABLES",      "LP_NATIVE_VECTOR_WIDTH"};
     json_t *environment = json_object();
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (getenv(names[i]))

@@ -15,8 +15,8 @@ typedef struct request {
 
 static int usage(void) {
     fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--keep OUT.json] [--plot OUT.svg]\n"
-                    "                    [--against OLD.json] [--section NAME[:ITEM]] [--fly WIDTHxHEIGHT] [--country "
-                    "MILLIONS] [--cpu-features avx2]\n"
+                    "                    [--against OLD.json] [--section NAME[:ITEM],...] [--fly WIDTHxHEIGHT] "
+                    "[--country MILLIONS] [--cpu-features avx2]\n"
                     "       camber_bench --readme RESULTS.json... FILE...\n");
     return 2;
 }
@@ -128,8 +128,8 @@ int main(int argc, char **argv) {
         return publish(argv + 2, argc - 2);
     if (!parse(argc, argv, &r))
         return usage();
-    /* As the tool does: a core for each of PoCL's threads. */
-    setenv("POCL_AFFINITY", "1", 0);
+    if (r.avx2_only)
+        setenv("CAMBER_CPU", "x86-64-v3", 0);
     const char *data = getenv("CAMBER_DATA");
     bench b = {.size = r.size,
                .warm_ups = r.size == BENCH_FULL ? 2 : 1,

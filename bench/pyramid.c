@@ -206,20 +206,20 @@ static void begin_rule(int first_zoom, int last_zoom, FILE *file) {
             0.7 * world / (double)(1 << last_zoom), 1.4 * world / (double)(1 << first_zoom));
 }
 
-/* Writes a rule for each zoom. */
+/* Writes a rule for each zoom. Mapnik leaves out as much detail as camber does. */
 static void write_line_rules(size_t layer, FILE *file) {
     for (int zoom = 0; zoom < ZOOMS; zoom++) {
         begin_rule(FIRST_ZOOM + zoom, FIRST_ZOOM + zoom, file);
         fprintf(file,
                 "<LineSymbolizer stroke=\"%s\" stroke-width=\"%g\" stroke-linejoin=\"round\" "
-                "stroke-linecap=\"round\"/></Rule>\n",
-                color_of(layer), width_at(layer, (size_t)zoom));
+                "stroke-linecap=\"round\" simplify=\"%g\"/></Rule>\n",
+                color_of(layer), width_at(layer, (size_t)zoom), BENCH_SIMPLIFY_PX);
     }
 }
 
 static void write_area_rule(size_t area, FILE *file) {
     begin_rule(areas[area].first_zoom, FIRST_ZOOM + ZOOMS - 1, file);
-    fprintf(file, "<PolygonSymbolizer fill=\"%s\"/></Rule>\n", areas[area].color);
+    fprintf(file, "<PolygonSymbolizer fill=\"%s\" simplify=\"%g\"/></Rule>\n", areas[area].color, BENCH_SIMPLIFY_PX);
 }
 
 static void write_name_rule(size_t name, FILE *file) {
@@ -315,14 +315,15 @@ static json_t *run_peer(const char *const *arguments, const char *input) {
     return said;
 }
 
-json_t *bench_pyramid_mapnik(const bench_pyramid *p, const char *format) {
-    char xml[128], box[128], low[16], high[16];
+json_t *bench_pyramid_mapnik(const bench_pyramid *p, const char *format, size_t runs) {
+    char xml[128], box[128], low[16], high[16], count[16];
     static const char program[] = CAMBER_BENCH_PEERS "/mapnik_tiles.mjs";
-    const char *const arguments[] = {"node", program, xml, box, low, high, format, NULL};
+    const char *const arguments[] = {"node", program, xml, box, low, high, format, count, NULL};
     snprintf(xml, sizeof xml, "%s/geojson.xml", p->folder);
     snprintf(box, sizeof box, "%.7f,%.7f,%.7f,%.7f", p->box[0], p->box[1], p->box[2], p->box[3]);
     snprintf(low, sizeof low, "%d", p->min_zoom);
     snprintf(high, sizeof high, "%d", p->max_zoom);
+    snprintf(count, sizeof count, "%zu", runs);
     setenv("NODE_PATH", CAMBER_BENCH_NPM, 1);
     return run_peer(arguments, NULL);
 }

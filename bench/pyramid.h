@@ -25,8 +25,9 @@ double bench_pyramid_shell(const bench_pyramid *pyramid, const char *command);
 
 /* The same lines, areas, names, widths and colours in the peers' forms, by ogr2ogr. false: it is not here, or fails. */
 bool bench_pyramid_write_maps(const bench_pyramid *pyramid);
-/* These print a line of JSON, of npm's Mapnik (peers/mapnik_tiles.mjs) and of renderd. NULL: not here. */
-json_t *bench_pyramid_mapnik(const bench_pyramid *pyramid, const char *format);
+/* These print a line of JSON, of npm's Mapnik (peers/mapnik_tiles.mjs) and of renderd, each after a run to warm up; of
+ * Mapnik, medians of so many runs. NULL: not here. */
+json_t *bench_pyramid_mapnik(const bench_pyramid *pyramid, const char *format, size_t runs);
 json_t *bench_pyramid_renderd(const bench_pyramid *pyramid, const char *format);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "base/base.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,7 +103,11 @@ static void put_machine(const page *p, const run *r) {
         fputs("that processor", p->to);
     else
         fprintf(p->to, "%s, %.0f cores", processor, bench_number(r->machine, "cores"));
-    fprintf(p->to, ", PoCL %s%s%s", bench_text(r->device, "driver"), *compiler ? ", " : "", compiler);
+    if (strncmp(bench_text(r->device, "name"), "camber ", strlen("camber ")) == 0)
+        fprintf(p->to, ", back end cpu by %s", bench_text(r->device, "version"));
+    else
+        fprintf(p->to, ", PoCL %s", bench_text(r->device, "driver"));
+    fprintf(p->to, "%s%s", *compiler ? ", " : "", compiler);
 }
 
 static void put_head(const page *p, const run *r) {
@@ -111,8 +116,8 @@ static void put_head(const page *p, const run *r) {
     if (r == p->runs)
         fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
                 bench_text(r->document, "sharing"));
-    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn.", bench_text(r->document, "date"),
-            bench_number(r->document, "runs"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long.",
+            bench_text(r->document, "date"), bench_number(r->document, "runs"));
 }
 
 /* A document may be put together: says which sections were measured on another day. */
@@ -145,12 +150,33 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Frames: the table of README.md ---- */
 
-/* A scene drawn in one run: camber's milliseconds, and how many times that each peer takes in its faster mode. */
-static void put_frame(const page *p, const json_t *row) {
-    const double frame_ms = bench_number(row, "cl_frame_ms");
-    put_number(frame_ms, 1, p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        put_number(row ? bench_best_peer(json_object_get(row, "peers"), p->libraries[k]) / frame_ms : 0, 1, p->to);
+/* Puts camber's milliseconds in a scene: a number per run. */
+static void put_times(const page *p, const char *section, const char *scene) {
+    for (size_t k = 0; k < p->run_count; k++)
+        fprintf(p->to, "%s%.1f", k ? "/" : " ", bench_number(find_row(p->runs + k, section, scene), "cl_frame_ms"));
+}
+
+/* Puts how many times that a library takes in its best way: a number per run. */
+static void put_ratios(const page *p, const char *section, const char *scene, const char *library) {
+    for (size_t k = 0; k < p->run_count; k++) {
+        const json_t *row = find_row(p->runs + k, section, scene);
+        const double ms = bench_best_peer(json_object_get(row, "peers"), library);
+        const double ratio = ms / bench_number(row, "cl_frame_ms");
+        fputs(k ? "/" : " ", p->to);
+        if (ms > 0)
+            fprintf(p->to, "%.*f", ratio < 2 ? 2 : 1, ratio);
+        else
+            fputs("-", p->to);
+    }
+}
+
+static void put_frame(const page *p, const char *section, const json_t *row) {
+    put_times(p, section, bench_text(row, "key"));
+    for (size_t k = 0; k < p->library_count; k++) {
+        fputs(" |", p->to);
+        put_ratios(p, section, bench_text(row, "key"), p->libraries[k]);
+    }
+    fputs(" |\n", p->to);
 }
 
 /* A peer's name and version, and how it was built where the next was built otherwise. */
@@ -165,7 +191,7 @@ static void put_peer(const page *p, const run *r, size_t k) {
     fputs(next ? "," : ".", p->to);
 }
 
-/* ---- Better ways ---- */
+/* ---- Best ways ---- */
 
 typedef struct way {
     const char *key;
@@ -173,10 +199,10 @@ typedef struct way {
 } way;
 
 /* A library's ways that are the fastest on some scene; gives how many. The first is so on the most scenes. */
-static size_t find_ways(const run *r, const char *library, way *ways) {
+static size_t find_ways(const run *r, const char *section, const char *library, way *ways) {
     size_t i, count = 0;
     const json_t *row;
-    json_array_foreach(rows_of(r, "frames"), i, row) {
+    json_array_foreach(rows_of(r, section), i, row) {
         const char *key = bench_best_way(json_object_get(row, "peers"), library);
         size_t k = 0;
         while (k < count && strcmp(ways[k].key, key) != 0)
@@ -194,11 +220,11 @@ static size_t find_ways(const run *r, const char *library, way *ways) {
     return count;
 }
 
-static void put_scenes(const page *p, const run *r, const char *library, const char *key) {
+static void put_scenes(const page *p, const run *r, const char *section, const char *library, const char *key) {
     const char *before = " on ";
     size_t i;
     const json_t *row;
-    json_array_foreach(rows_of(r, "frames"), i, row) {
+    json_array_foreach(rows_of(r, section), i, row) {
         if (strcmp(bench_best_way(json_object_get(row, "peers"), library), key) != 0)
             continue;
         fprintf(p->to, "%s%s", before, bench_text(row, "scene"));
@@ -207,63 +233,110 @@ static void put_scenes(const page *p, const run *r, const char *library, const c
 }
 
 /* "Blend2D: threads, one path, but one thread, one path on New York." false: it has one way. */
-static bool put_ways(const page *p, const run *r, const char *library, const char *before) {
+static bool put_ways(const page *p, const run *r, const char *section, const char *library, const char *before) {
     way ways[WAYS_MAX];
-    const size_t count = find_ways(r, library, ways);
+    const size_t count = find_ways(r, section, library, ways);
     if (count == 0 || !*bench_text(json_object_get(r->peers, ways[0].key), "way"))
         return false;
     fprintf(p->to, "%s%s: ", before, bench_text(json_object_get(r->peers, library), "name"));
     for (size_t k = 0; k < count; k++) {
         fprintf(p->to, "%s%s", k ? ", but " : "", bench_text(json_object_get(r->peers, ways[k].key), "way"));
         if (k > 0)
-            put_scenes(p, r, library, ways[k].key);
+            put_scenes(p, r, section, library, ways[k].key);
     }
     return true;
 }
 
-static void put_better_ways(const page *p, const run *r) {
-    const char *before = " Better ways of ";
+static void put_best_ways(const page *p, const run *r, const char *section, const char *of) {
+    const char *before = of;
     for (size_t k = 0; k < p->library_count; k++)
-        if (put_ways(p, r, p->libraries[k], before))
+        if (put_ways(p, r, section, p->libraries[k], before))
             before = "; ";
     fputs(*before == ';' ? "." : "", p->to);
 }
 
-static void put_frames_head(const page *p) {
-    fputs("| scene |", p->to);
-    for (size_t i = 0; i < p->run_count; i++) {
-        fprintf(p->to, " %s: ms |", code_of(p->runs + i));
-        for (size_t k = 0; k < p->library_count; k++)
-            fprintf(p->to, " %s |", bench_text(json_object_get(p->runs[0].peers, p->libraries[k]), "name"));
-    }
-    put_rule(1 + p->run_count * (1 + p->library_count), p->to);
+/* Explains "3.1/2.4". */
+static void put_codes(const page *p) {
+    for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
+        fprintf(p->to, "%s%s", k ? "/" : " Pairs: ", code_of(p->runs + k));
+    fputs(p->run_count > 1 ? " code." : "", p->to);
+}
+
+/* Whether a run has the peers of the first one, built alike. */
+static bool has_same_peers(const page *p, const run *r) {
+    return r != p->runs && json_equal(r->peers, p->runs->peers);
 }
 
 static void put_frames(const page *p) {
     size_t i;
     const json_t *row;
-    put_frames_head(p);
+    fputs("| scene | camber: ms |", p->to);
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
+    put_rule(2 + p->library_count, p->to);
     json_array_foreach(rows_of(p->runs, "frames"), i, row) {
         fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
-        for (size_t k = 0; k < p->run_count; k++)
-            put_frame(p, find_row(p->runs + k, "frames", bench_text(row, "key")));
-        fputs("\n", p->to);
+        put_frame(p, "frames", row);
     }
-    fprintf(
-        p->to,
-        "\nms: camber's, a frame of %d x %d px, every point, from lines to pixels in memory, in OpenCL on all cores. "
-        "Other columns: time relative to camber, each library in its [faster mode](docs/performance.md), Blend2D and "
-        "ThorVG on as many threads, the others on one; AGG is compiled like camber.\n",
-        BENCH_SIDE_PX, BENCH_SIDE_PX);
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) {
+        fprintf(p->to, "| areas: %s |", bench_text(row, "scene"));
+        put_frame(p, "areas", row);
+    }
+    fprintf(p->to,
+            "\nFrames of %d x %d px on all cores, every point, from lines or rings in memory to pixels in memory. "
+            "Others: time relative to camber, below 1 if they are faster, each in its [best way](docs/performance.md).",
+            BENCH_SIDE_PX, BENCH_SIDE_PX);
+    put_codes(p);
+    fputs("\n", p->to);
     for (i = 0; i < p->run_count; i++) {
         const run *r = p->runs + i;
         fputs("\n", p->to);
         put_machine(p, r);
         fprintf(p->to, ", %.10s.", frames_date(r));
-        for (size_t k = 0; k < p->library_count; k++)
+        for (size_t k = 0; k < p->library_count && !has_same_peers(p, r); k++)
             put_peer(p, r, k);
         fputs("\n", p->to);
     }
+}
+
+/* ---- Against each library ---- */
+
+/* Puts the least, the greatest and the geometric mean of how many times that a library takes in a section's scenes. */
+static void put_mean(const page *p, const run *r, const char *section, const char *library) {
+    double logarithms = 0, least = INFINITY, most = 0;
+    size_t i, count = 0;
+    const json_t *row;
+    json_array_foreach(rows_of(r, section), i, row) {
+        const double ratio = bench_best_peer(json_object_get(row, "peers"), library) / bench_number(row, "cl_frame_ms");
+        if (!(ratio > 0))
+            continue;
+        logarithms += log(ratio);
+        least = fmin(least, ratio);
+        most = fmax(most, ratio);
+        count++;
+    }
+    if (count > 0)
+        fprintf(p->to, " %.2f to %.2f, mean %.2f |", least, most, exp(logarithms / (double)count));
+    else
+        fputs(" - |", p->to);
+}
+
+static void put_means(const page *p) {
+    static const char *const sections[] = {"frames", "areas"}, *const names[] = {"lines", "areas"};
+    fputs("### Against each library\n\n| times as long as camber |", p->to);
+    for (size_t k = 0; k < p->run_count; k++)
+        for (size_t s = 0; s < 2; s++)
+            fprintf(p->to, " %s: %s |", code_of(p->runs + k), names[s]);
+    put_rule(1 + 2 * p->run_count, p->to);
+    for (size_t i = 0; i < p->library_count; i++) {
+        fprintf(p->to, "| %s |", bench_text(json_object_get(p->runs->peers, p->libraries[i]), "name"));
+        for (size_t k = 0; k < p->run_count; k++)
+            for (size_t s = 0; s < 2; s++)
+                put_mean(p, p->runs + k, sections[s], p->libraries[i]);
+        fputs("\n", p->to);
+    }
+    fputs("\nWhole frames of all scenes, each library in its best way in each. The mean is the geometric one.\n\n",
+          p->to);
 }
 
 /* ---- Frames with fewer points ---- */
@@ -278,7 +351,7 @@ static void put_simplified(const page *p) {
     const json_t *row;
     fputs("### Frames with fewer points\n\n| whole frames, ms |", p->to);
     for (size_t k = 0; k < p->run_count; k++)
-        fprintf(p->to, " %s: OpenCL | at 0.1 px |", code_of(p->runs + k));
+        fprintf(p->to, " %s: kernels | at 0.1 px |", code_of(p->runs + k));
     fprintf(p->to, " %s: GL | at 0.1 px |", code_of(p->runs));
     put_rule(2 * p->run_count + 3, p->to);
     json_array_foreach(rows_of(p->runs, "frames"), i, row) {
@@ -351,7 +424,7 @@ static void put_fly(const page *p) {
     json_array_foreach(rows_of(p->runs, "fly"), i, row) {
         const json_t *frame = json_object_get(row, "frame");
         fprintf(p->to, "| %s | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f |\n",
-                strcmp(bench_text(row, "by"), "cl") == 0 ? "OpenCL" : "GL", bench_number(frame, "p50_ms"),
+                strcmp(bench_text(row, "by"), "cl") == 0 ? "kernels" : "GL", bench_number(frame, "p50_ms"),
                 bench_number(frame, "p99_ms"), median_of(row, "scene"), median_of(row, "tessellate"),
                 median_of(row, "draw"), median_of(row, "read"));
     }
@@ -365,39 +438,68 @@ static void put_fly(const page *p) {
 
 /* ---- Areas: the table of docs/areas.md ---- */
 
-/* Camber's milliseconds and error; of each library the time relative to that, in its faster mode, and its error. */
+/* Puts camber's milliseconds of each run, and how many times that each library takes in its best way; after these its
+ * error in the first run. */
 static void put_areas_row(const page *p, const json_t *row) {
-    const double frame_ms = bench_number(row, "cl_frame_ms");
+    const char *key = bench_text(row, "key");
     const json_t *peers = json_object_get(row, "peers");
     fprintf(p->to, "| %s |", bench_text(row, "scene"));
     put_count(bench_number(row, "edges"), p->to);
-    fprintf(p->to, " %.1f, %.3f |", frame_ms, bench_number(row, "error"));
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %.1f, %.3f |", bench_best_peer(peers, p->libraries[k]) / frame_ms,
+    put_times(p, "areas", key);
+    fprintf(p->to, "; %.3f |", bench_number(row, "error"));
+    for (size_t k = 0; k < p->library_count; k++) {
+        put_ratios(p, "areas", key, p->libraries[k]);
+        fprintf(p->to, "; %.3f |",
                 bench_number(json_object_get(peers, bench_best_way(peers, p->libraries[k])), "error"));
+    }
     fputs("\n", p->to);
 }
 
+static void put_cities(const page *p) {
+    size_t i;
+    const json_t *row;
+    json_array_foreach(rows_of(p->runs, "city"), i, row)
+        fprintf(p->to, "%s %s in %.1f ms, Mapnik in %.1f times that",
+                i ? ";" : " The style city, areas and lines, beside Mapnik by stripes:", bench_text(row, "scene"),
+                bench_number(row, "cl_frame_ms"), bench_number(row, "mapnik_ms") / bench_number(row, "cl_frame_ms"));
+    fputs(i > 0 ? "." : "", p->to);
+}
+
+static void put_glyphs(const page *p) {
+    const char *before = " A million rings of 40 edges, 12 px high, as glyphs are, by one thread:";
+    for (size_t k = 0; k < p->run_count; k++) {
+        const json_t *row = json_array_get(rows_of(p->runs + k, "glyphs"), 0);
+        const double ms = bench_number(row, "million_ms"), theirs = bench_number(row, "freetype_ms");
+        if (!row)
+            continue;
+        fprintf(p->to, "%s %s code %.0f ms, FreeType's smooth rasterizer (%s) %.0f, which is %.2f times as long",
+                before, code_of(p->runs + k), ms, bench_text(row, "version"), theirs, theirs / ms);
+        before = ";";
+    }
+    fputs(*before == ';' ? "." : "", p->to);
+}
+
 static void put_areas(const page *p) {
-    const run *r = p->runs;
     size_t i;
     const json_t *row;
     fputs("| areas | edges | camber: ms |", p->to);
     for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(r->peers, p->libraries[k]), "name"));
+        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
     put_rule(3 + p->library_count, p->to);
-    json_array_foreach(rows_of(r, "areas"), i, row) put_areas_row(p, row);
-    fputs("\nFrames of 2048 x 2048 px, all areas black and one path, from rings in memory to pixels in memory. Other "
-          "columns: time relative to camber, each library in its faster mode, and after it the mean error beside "
-          "16 x 16 samples a pixel, of 255.",
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) put_areas_row(p, row);
+    fputs("\nFrames of 2048 x 2048 px, all areas black, from rings in memory to pixels in memory. Other columns: time "
+          "relative to camber, below 1 if they are faster, each library in its best way. After a semicolon: the mean "
+          "error beside 16 x 16 samples a pixel, of 255.",
           p->to);
-    json_array_foreach(rows_of(r, "city"), i, row)
-        fprintf(p->to, "%s %s in %.1f ms, Mapnik in %.1f times that",
-                i ? ";" : " The style city, areas and lines, beside Mapnik on one thread:", bench_text(row, "scene"),
-                bench_number(row, "cl_frame_ms"), bench_number(row, "mapnik_ms") / bench_number(row, "cl_frame_ms"));
-    fputs(json_array_size(rows_of(r, "city")) ? ".\n\n" : "\n\n", p->to);
-    put_machine(p, r);
-    fprintf(p->to, ", %.10s.\n", bench_text(json_object_get(r->sections, "areas"), "date"));
+    put_codes(p);
+    put_cities(p);
+    put_glyphs(p);
+    for (size_t k = 0; k < p->run_count; k++) {
+        fputs("\n\n", p->to);
+        put_machine(p, p->runs + k);
+        fprintf(p->to, ", %.10s.", bench_text(json_object_get(p->runs[k].sections, "areas"), "date"));
+    }
+    fputs("\n", p->to);
 }
 
 static void put_textures(const page *p) {
@@ -434,7 +536,7 @@ static void put_growth(const page *p) {
     const json_t *row;
     if (json_array_size(rows_of(p->runs, "growth")) == 0)
         return;
-    fputs("### Growth in OpenCL\n\n| what grows | points | side, px | ms a frame | ns each | cores at work |\n"
+    fputs("### Growth\n\n| what grows | points | side, px | ms a frame | ns each | cores at work |\n"
           "|---|---|---|---|---|---|\n",
           p->to);
     json_array_foreach(rows_of(p->runs, "growth"), i, row) {
@@ -491,9 +593,11 @@ static void put_start(const page *p) {
 static void put_measured(const page *p) {
     for (size_t i = 0; i < p->run_count; i++) {
         put_head(p, p->runs + i);
-        put_better_ways(p, p->runs + i);
+        put_best_ways(p, p->runs + i, "frames", " Best ways of ");
+        put_best_ways(p, p->runs + i, "areas", " For areas, ");
         put_dates(p, p->runs + i);
     }
+    put_means(p);
     put_simplified(p);
     put_tessellation(p);
     if (p->run_count > 1)

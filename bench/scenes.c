@@ -334,6 +334,23 @@ static void add_houses(camber_made_scene *made, size_t count) {
     }
 }
 
+/* Letters like a C, 12 px high, each turned its own way, a cell of a grid each: 20 points outside and 20 inside. */
+static void add_glyphs(camber_made_scene *made, size_t count) {
+    enum { POINTS = 20 };
+    const size_t across = (size_t)ceil(sqrt((double)count));
+    const double cell = (double)BENCH_SIDE_PX / (double)across;
+    for (size_t i = 0; i < count; i++) {
+        const double x = cell * ((double)(i % across) + 0.5), y = cell * ((double)(i / across) + 0.5);
+        const double gap = 0.3 + 0.005 * (double)(i % 97), first = 0.7 * (double)(i % 101) + gap;
+        const double step = (6.283185307179586 - 2 * gap) / (POINTS - 1), inside = 4 + 0.01 * (double)(i % 53);
+        for (int k = 0; k < 2 * POINTS; k++) {
+            const double turn = first + step * (k < POINTS ? k : 2 * POINTS - 1 - k), radius = k < POINTS ? 6 : inside;
+            camber_made_scene_point(made, x + radius * cos(turn), y + radius * sin(turn));
+        }
+        end_area(made);
+    }
+}
+
 /* One island whose shore has waves of all lengths. */
 static void add_island(camber_made_scene *made, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -351,6 +368,7 @@ typedef struct area_source {
     const char *where;             /* an OGR filter; NULL: all areas */
     void (*add)(camber_made_scene *made, size_t count);
     size_t count;
+    bool apart; /* made only by its key */
 } area_source;
 
 static const area_source area_sources[] = {
@@ -362,6 +380,7 @@ static const area_source area_sources[] = {
      .where = "landuse IS NOT NULL"},
     {.key = "houses", .name = "100,000 houses", .add = add_houses, .count = 100000},
     {.key = "island", .name = "an island", .add = add_island, .count = 1000000},
+    {.key = "glyphs", .name = "21,316 glyphs", .add = add_glyphs, .count = 21316, .apart = true},
 };
 
 static bool make_areas(const bench *b, const area_source *from, bench_scene *scene) {
@@ -391,8 +410,8 @@ size_t bench_areas_make(const bench *b, const char *key, bench_scene scenes[BENC
     size_t count = 0;
     for (size_t i = 0; i < sizeof area_sources / sizeof *area_sources; i++) {
         const area_source *from = area_sources + i;
-        const bool here = from->file ? b->data && b->size != BENCH_TINY : b->size != BENCH_QUICK;
-        if (here && (!key || strcmp(key, from->key) == 0) && make_area_scene(b, from, scenes + count))
+        const bool here = from->file ? b->data && b->size != BENCH_TINY : b->size != BENCH_QUICK || from->apart;
+        if (here && (key ? strcmp(key, from->key) == 0 : !from->apart) && make_area_scene(b, from, scenes + count))
             count++;
     }
     return count;

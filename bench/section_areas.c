@@ -2,24 +2,23 @@
  * every peer, in turn in one run. Each picture is held against 16 x 16 samples of every pixel. */
 #include "bench.h"
 
+#include "base/base.h"
+
 #include "validate/oracle.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { PEERS_MAX = 16, PIXELS = BENCH_SIDE_PX * BENCH_SIDE_PX };
-
-/* A peer whose picture is farther from the samples than this draws something else, and counts for nothing: mean error,
- * 255ths, over the pixels that either draws on. */
-#define ERROR_MAX 20.0
+enum { PIXELS = BENCH_SIDE_PX * BENCH_SIDE_PX };
 
 typedef struct trial {
     bench *b;
     const bench_scene *scene;
     float *truth; /* what is inside, of each pixel */
-    bench_series frame, tessellate, peers[PEERS_MAX];
-    double error, errors[PEERS_MAX];
+    bench_series frame, tessellate;
+    double error;
+    bench_peers_trial peers;
 } trial;
 
 /* Mean, 255ths, over the pixels that are not white in both. */
@@ -51,32 +50,17 @@ static camber_status draw_ours(trial *t, bool counts) {
     return CAMBER_OK;
 }
 
-static void draw_peers(trial *t, bool counts) {
-    for (size_t i = 0; i < bench_peer_count && i < PEERS_MAX; i++) {
-        const double ms = bench_peer_draw(t->b, bench_peers[i], t->scene);
-        if (!counts)
-            t->errors[i] = ms > 0 ? error_of(t->truth, t->b->pictured) : -1;
-        else if (ms > 0)
-            bench_series_add(t->peers + i, ms);
-    }
+static double peer_error(const bench *b, const void *truth) {
+    return error_of(truth, b->pictured);
 }
 
 static void report(const trial *t, json_t *result) {
     const double frame_ms = bench_series_median(&t->frame);
-    json_t *peers = json_object();
+    json_t *peers = bench_peers_report(&t->peers, t->scene, "error");
     json_t *row = json_pack("{s:s, s:s, s:I, s:I, s:f, s:o, s:o, s:o}", "key", t->scene->key, "scene", t->scene->name,
                             "areas", (json_int_t)t->scene->area_count, "edges", (json_int_t)t->scene->segments, "error",
                             t->error, "cl_frame_ms", bench_ms(frame_ms), "tessellate_ms",
                             bench_ms(bench_series_median(&t->tessellate)), "peers", peers);
-    for (size_t i = 0; i < bench_peer_count && i < PEERS_MAX; i++) {
-        const bool alike = t->errors[i] >= 0 && t->errors[i] <= ERROR_MAX;
-        if (!alike)
-            fprintf(stderr, "camber_bench: %s on %s does not count: its picture is off by %.0f of 255\n",
-                    bench_peers[i]->key, t->scene->name, t->errors[i]);
-        json_object_set_new(peers, bench_peers[i]->key,
-                            json_pack("{s:o, s:f, s:b}", "ms", bench_ms(bench_series_median(t->peers + i)), "error",
-                                      t->errors[i], "alike", alike));
-    }
     for (size_t i = 0; i < bench_peer_count; i++)
         if (!strchr(bench_peers[i]->key, '_'))
             bench_result_add_figure(result,
@@ -91,10 +75,11 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *r
         t.truth && camber_oracle_fill(&scene->lines, CAMBER_ORACLE_NONZERO, BENCH_SIDE_PX, BENCH_SIDE_PX, t.truth)
             ? CAMBER_OK
             : CAMBER_ERROR_MEMORY;
+    const double begin_ms = camber_now_ms();
     /* In turn, so that a machine whose speed drifts is fair to all. */
-    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+    for (size_t run = 0; bench_goes_on(b, run, begin_ms) && status == CAMBER_OK; run++) {
         status = draw_ours(&t, run >= b->warm_ups);
-        draw_peers(&t, run >= b->warm_ups);
+        bench_peers_draw(b, &t.peers, scene, run >= b->warm_ups, peer_error, t.truth);
     }
     free(t.truth);
     if (status == CAMBER_OK)

@@ -230,7 +230,8 @@ static void print(const json_t *result, FILE *to) {
     fprintf(
         to,
         "The style city, %d x %d px, at %g px: ms from the network on the device to pixels in memory, and of Mapnik "
-        "from\nthe same rings and lines; mean difference of the pictures, of 255.\n\n%-12s %7s %8s %8s %8s %9s %6s "
+        "by a stripe per thread from\nthe same rings and lines; mean difference of the pictures, of 255.\n\n%-12s %7s "
+        "%8s %8s %8s %9s %6s "
         "%10s\n",
         BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX, "city", "layers", "edges", "tess.", "frame", "Mapnik", "times",
         "difference");

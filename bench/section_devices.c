@@ -54,33 +54,49 @@ static camber_status open_all(bench *b, devices *on) {
     return status;
 }
 
+/* A device's frames, and how many times each of them fits into the first device's frame before it: other programs that
+ * come and go slow down both. */
+typedef struct series {
+    bench_series ms, cpu_ms, ratio, cpu_ratio;
+} series;
+
+static void add_run(series *to, double ms, double cpu_ms, const double first[2]) {
+    bench_series_add(&to->ms, ms);
+    bench_series_add(&to->cpu_ms, cpu_ms);
+    bench_series_add(&to->ratio, first[0] / ms);
+    bench_series_add(&to->cpu_ratio, first[1] / cpu_ms);
+}
+
 /* Measures a frame on every device, and adds a row of its medians and a figure of each device against the first. */
 static camber_status measure_frame(devices *on, const char *key, const char *what, const bench_frame_desc *desc,
                                    json_t *result) {
-    bench_series series[DEVICES_MAX] = {0}, cpu[DEVICES_MAX] = {0};
+    series all[DEVICES_MAX] = {0};
     const bench *b = &on->list[0].b;
     camber_status status = CAMBER_OK;
-    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++)
+    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+        double first[2] = {0};
         for (size_t i = 0; i < on->count && status == CAMBER_OK; i++) {
             bench_frame_times times = {0};
             const double begin = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
             status = bench_frame(&on->list[i].b, desc, &times);
             const double cpu_ms = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID) - begin;
-            if (status != CAMBER_OK || run < b->warm_ups)
-                continue;
-            bench_series_add(series + i, times.frame_ms);
-            bench_series_add(cpu + i, cpu_ms);
+            if (i == 0)
+                first[0] = times.frame_ms, first[1] = cpu_ms;
+            if (status == CAMBER_OK && run >= b->warm_ups)
+                add_run(all + i, times.frame_ms, cpu_ms, first);
         }
+    }
     if (status != CAMBER_OK)
         return status;
     json_t *list = json_array();
-    const double first_ms = bench_series_median(series);
     for (size_t i = 0; i < on->count; i++) {
-        const double ms = bench_series_median(series + i);
-        json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "device", on->list[i].name, "ms", bench_ms(ms),
-                                              "cpu_ms", bench_ms(bench_series_median(cpu + i))));
+        const double ratio = bench_series_median(&all[i].ratio);
+        json_array_append_new(list, json_pack("{s:s, s:o, s:o, s:f, s:f}", "device", on->list[i].name, "ms",
+                                              bench_ms(bench_series_median(&all[i].ms)), "cpu_ms",
+                                              bench_ms(bench_series_median(&all[i].cpu_ms)), "ratio", ratio,
+                                              "cpu_ratio", bench_series_median(&all[i].cpu_ratio)));
         if (i > 0)
-            bench_result_add_figure(result, &(bench_figure){key, what, on->list[i].name, first_ms / ms, true});
+            bench_result_add_figure(result, &(bench_figure){key, what, on->list[i].name, ratio, true});
     }
     bench_result_add_row(result, json_pack("{s:s, s:s, s:o}", "key", key, "what", what, "devices", list));
     return CAMBER_OK;
@@ -129,18 +145,17 @@ static void print(const json_t *result, FILE *to) {
     const json_t *row, *device;
     double logs = 0, cpu_logs = 0;
     size_t count = 0;
-    fprintf(to,
-            "Frames on CPU devices, %d x %d px, from lines in memory to pixels in memory: ms; CPU time of all threads, "
-            "ms; and\nhow many times a device's frame fits into the first device's, in time and in CPU time.\n\n",
-            BENCH_SIDE_PX, BENCH_SIDE_PX);
+    fprintf(
+        to,
+        "Frames on CPU devices, %d x %d px, from lines in memory to pixels in memory: ms; CPU time of all threads, "
+        "ms; and\nhow many times a device's frame fits into the first device's, in time and in CPU time (the median "
+        "of pairs).\n\n",
+        BENCH_SIDE_PX, BENCH_SIDE_PX);
     json_array_foreach(bench_result_rows(result), i, row) {
         const json_t *list = json_object_get(row, "devices");
-        const double first_ms = bench_number(json_array_get(list, 0), "ms"),
-                     first_cpu_ms = bench_number(json_array_get(list, 0), "cpu_ms");
         fprintf(to, "%s, %s\n", bench_text(row, "key"), bench_text(row, "what"));
         json_array_foreach(list, k, device) {
-            const double ratio = first_ms / bench_number(device, "ms"),
-                         cpu_ratio = first_cpu_ms / bench_number(device, "cpu_ms");
+            const double ratio = bench_number(device, "ratio"), cpu_ratio = bench_number(device, "cpu_ratio");
             fprintf(to, "    %-50.50s %8.2f ms %8.2f ms %6.2f %6.2f\n", bench_text(device, "device"),
                     bench_number(device, "ms"), bench_number(device, "cpu_ms"), ratio, cpu_ratio);
             if (k == 1) {

@@ -1,14 +1,10 @@
 /* A frame of every scene, and the same polylines drawn by every peer, in turn in one run. */
 #include "bench.h"
 
+#include "base/base.h"
+
 #include <stdlib.h>
 #include <string.h>
-
-enum { PEERS_MAX = 16 };
-/* A peer whose picture is farther from camber's than this draws something else, and counts for nothing: mean
- * difference, 255ths, over the pixels that either draws on. On Porto those that draw line over line come to 1.3, those
- * that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
-#define DIFFERENCE_MAX 20.0
 
 /* camber's own times: by GL and by kernels, with every point and with those that BENCH_SIMPLIFY_PX leaves. */
 enum { DRAW, FRAME, SIMPLE_DRAW, SIMPLE_FRAME, UNITED_DRAW, CL_FRAME, CL_SIMPLE_FRAME, OURS };
@@ -29,8 +25,9 @@ typedef struct trial {
     bench *b;
     const bench_scene *scene;
     camber_network *network;
-    bench_series ours[OURS], peers[PEERS_MAX];
-    double differences[PEERS_MAX], cl_difference;
+    bench_series ours[OURS];
+    double cl_difference;
+    bench_peers_trial peers;
 } trial;
 
 static double difference_of(const uint8_t *a, const uint8_t *b) {
@@ -71,14 +68,9 @@ static camber_status draw_ours(trial *t, bool counts) {
     return status;
 }
 
-static void draw_peers(trial *t, bool counts) {
-    for (size_t i = 0; i < bench_peer_count && i < PEERS_MAX; i++) {
-        const double ms = bench_peer_draw(t->b, bench_peers[i], t->scene);
-        if (!counts)
-            t->differences[i] = ms > 0 ? difference_of(t->b->picture, t->b->pictured) : -1;
-        else if (ms > 0)
-            bench_series_add(t->peers + i, ms);
-    }
+static double peer_difference(const bench *b, const void *user) {
+    (void)user;
+    return difference_of(b->picture, b->pictured);
 }
 
 static void add_figures(const trial *t, const json_t *peers, json_t *result) {
@@ -97,23 +89,13 @@ static void add_figures(const trial *t, const json_t *peers, json_t *result) {
 }
 
 static void report(const trial *t, json_t *result) {
-    json_t *peers = json_object();
+    json_t *peers = bench_peers_report(&t->peers, t->scene, "difference");
     json_t *row = json_pack("{s:s, s:s, s:f, s:I, s:I, s:f}", "key", t->scene->key, "scene", t->scene->name, "width_px",
                             (double)t->scene->width_px, "polylines", (json_int_t)t->scene->lines.polyline_count,
                             "segments", (json_int_t)t->scene->segments, "cl_difference", t->cl_difference);
     for (int i = 0; i < OURS; i++)
         json_object_set_new(row, ours[i].key, bench_ms(bench_series_median(t->ours + i)));
     json_object_set_new(row, "peers", peers);
-    for (size_t i = 0; i < bench_peer_count; i++) {
-        const double difference = t->differences[i];
-        const bool alike = difference >= 0 && difference <= DIFFERENCE_MAX;
-        if (!alike)
-            fprintf(stderr, "camber_bench: %s on %s does not count: its picture differs by %.0f of 255\n",
-                    bench_peers[i]->key, t->scene->name, difference);
-        json_object_set_new(peers, bench_peers[i]->key,
-                            json_pack("{s:o, s:f, s:b}", "ms", bench_ms(bench_series_median(t->peers + i)),
-                                      "difference", difference, "alike", alike));
-    }
     add_figures(t, peers, result);
     bench_result_add_row(result, row);
 }
@@ -122,10 +104,11 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, void *use
     (void)user;
     trial t = {.b = b, .scene = scene};
     camber_status status = bench_network_of_lines(b, &scene->lines, &t.network);
+    const double begin_ms = camber_now_ms();
     /* In turn, so that a machine whose speed drifts is fair to all. */
-    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+    for (size_t run = 0; bench_goes_on(b, run, begin_ms) && status == CAMBER_OK; run++) {
         status = draw_ours(&t, run >= b->warm_ups);
-        draw_peers(&t, run >= b->warm_ups);
+        bench_peers_draw(b, &t.peers, scene, run >= b->warm_ups, peer_difference, NULL);
     }
     camber_network_destroy(t.network);
     if (status == CAMBER_OK)
@@ -180,10 +163,10 @@ static void print(const json_t *result, FILE *to) {
     fprintf(to,
             "Drawing in GL, %d x %d px, round joins, butt caps, black on white, ms. draw: clear, draw, finish; frame: "
             "from lines\nin memory to pixels in memory; .1: what lies closer than %g px is left out; united: draw .1, "
-            "all lines as one area.\nPeers: from lines to pixels in memory, and that time relative to camber's draw "
-            ".1.\n\n",
+            "all lines as one area.\nPeers: from lines to pixels in memory, and that time relative to camber's "
+            "frame.\n\n",
             BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX);
-    print_table(result, in_gl, SIMPLE_DRAW, to);
+    print_table(result, in_gl, FRAME, to);
     fprintf(to, "\nDrawing in OpenCL, the same lines: cl, whole frames; frame: GL's. Peers: their time relative to cl "
                 "with every point drawn.\n\n");
     print_table(result, in_cl, CL_FRAME, to);

@@ -33,7 +33,7 @@ static const struct {
     [WAY_ONE_THREAD] = {"png_1", "camber, png, one thread", {"--threads", "1", NULL}},
     [WAY_MESH] = {"mesh", "camber, mesh tiles", {"--threads", "2", "--format", "glb", NULL}},
     [WAY_MAPNIK] = {"mapnik", "Mapnik, png32:z=1", {"png32:z=1"}},
-    [WAY_MAPNIK8] = {"mapnik_png8", "Mapnik, png8", {"png8"}},
+    [WAY_MAPNIK8] = {"mapnik_png8", "Mapnik, png8:z=1", {"png8:z=1"}},
     [WAY_RENDERD] = {"renderd", "renderd, png32:z=1", {"png32:z=1"}},
 };
 
@@ -61,9 +61,9 @@ static double run_camber(const bench *b, const bench_pyramid *p, way by, city_ti
     return ms;
 }
 
-static double run_peer(const bench_pyramid *p, way by, city_times *times) {
+static double run_peer(const bench_pyramid *p, way by, size_t runs, city_times *times) {
     const char *format = ways[by].options[0];
-    json_t *said = by == WAY_RENDERD ? bench_pyramid_renderd(p, format) : bench_pyramid_mapnik(p, format);
+    json_t *said = by == WAY_RENDERD ? bench_pyramid_renderd(p, format) : bench_pyramid_mapnik(p, format, runs);
     if (!said)
         return -1;
     const double ms = bench_number(said, "ms");
@@ -100,9 +100,9 @@ static bool measure_ways(bench *b, bench_pyramid *p, city_times *times) {
     const bool peers = b->size != BENCH_TINY && bench_pyramid_write_maps(p);
     for (size_t run = 0; run < runs; run++)
         for (int by = 0; by < WAYS; by++) {
-            if (by >= WAY_MAPNIK && (!peers || run > 0)) /* these take a minute, and once will do */
+            if (by >= WAY_MAPNIK && (!peers || run > 0)) /* these repeat it themselves */
                 continue;
-            const double ms = by < WAY_MAPNIK ? run_camber(b, p, (way)by, times) : run_peer(p, (way)by, times);
+            const double ms = by < WAY_MAPNIK ? run_camber(b, p, (way)by, times) : run_peer(p, (way)by, runs, times);
             if (ms < 0 && by < WAY_MESH) /* a build may be without mesh tiles */
                 return false;
             if (ms > 0)
@@ -135,7 +135,7 @@ static void add_city(const char *key, const char *name, const bench_pyramid *p, 
     }
     bench_result_add_row(result, row);
     add_ratio(result, key, "tiles, png", "Mapnik, png32:z=1", ms[WAY_MAPNIK] / ms[WAY_PNG]);
-    add_ratio(result, key, "tiles, png8", "Mapnik, png8", ms[WAY_MAPNIK8] / ms[WAY_PNG8]);
+    add_ratio(result, key, "tiles, png8", "Mapnik, png8:z=1", ms[WAY_MAPNIK8] / ms[WAY_PNG8]);
     add_ratio(result, key, "tiles, png", "renderd", ms[WAY_RENDERD] / ms[WAY_PNG]);
     add_ratio(result, key, "tiles of two threads", "one", ms[WAY_ONE_THREAD] / ms[WAY_PNG]);
     add_ratio(result, key, "mesh tiles", "tiles, png", ms[WAY_PNG] / ms[WAY_MESH]);
@@ -189,7 +189,7 @@ static json_t *run_labelled(const bench *b, bench_pyramid *p, label_way by) {
     static const char *const with[] = {"--threads", "2", NULL}, *const without[] = {"--threads", "2", "--no-labels",
                                                                                     NULL};
     if (by == LABELS_MAPNIK)
-        return bench_pyramid_mapnik(p, "png32:z=1");
+        return bench_pyramid_mapnik(p, "png32:z=1", 1);
     if (by == LABELS_RENDERD)
         return bench_pyramid_renderd(p, "png32:z=1");
     bench_pyramid own = *p;

@@ -38,6 +38,7 @@ int main(int argc, char **argv) {
                 camber_style_create_builtin(context, CAMBER_THEME_LIGHT, &style) == CAMBER_OK &&
                 camber_features_create(context, style, &features) == CAMBER_OK &&
                 camber_features_read_fonts(features, NULL, NULL) == CAMBER_OK && /* labels */
+                camber_features_read_sprites(features, 2, NULL) == CAMBER_OK &&  /* their icons */
                 camber_features_read(features, &source) == CAMBER_OK &&
                 camber_page_create(context, &sheet, &page) == CAMBER_OK &&
                 camber_page_set_credit(page, camber_features_get_attribution(features)) == CAMBER_OK;

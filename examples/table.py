@@ -2,7 +2,7 @@
 
 Each library gets the same GeoDataFrame, of 500,000 lines unless LINES says otherwise, and makes a picture of 1024 x 1024
 pixels. datashader is used if it is installed. Then camber counts how many tracks of 10 million points cross each pixel of
-2048 x 2048. Each time is the median of three runs. Shapely 1 hands out lines one by one, which takes most of the time.
+2048 x 2048. Each time is the median of three runs.
 """
 
 import sys

@@ -339,13 +339,13 @@ CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
 /* Sixteen edges that are stored together are a bunch if all that are drawn have one brush, and if they would have at
  * least four times as many entries in the lists of tiles as their common box has tiles. It has one entry in each of
  * these lists instead. Returns the bunch, or CAMBER_NO_BUNCH. */
-CAMBER_FN camber_u32 camber_bunch_of(CAMBER_GLOBAL const camber_u32 *boxes, CAMBER_GLOBAL const float *brushes) {
+CAMBER_FN camber_u32 camber_bunch_of(CAMBER_GLOBAL const camber_u32 *boxes, CAMBER_GLOBAL const camber_u32 *brushes) {
     camber_u32 x0 = 255u, y0 = 255u, x1 = 0u, y1 = 0u, entries = 0u, first = 16u, least = CAMBER_NO_EDGE, most = 0u;
 #ifdef CAMBER_DEVICE
 #pragma clang loop vectorize_width(16)
 #endif
     for (camber_u32 k = 0u; k < 16u; k++) {
-        const camber_u32 box = boxes[k], brush = CAMBER_BITS(brushes[k]), undrawn = box == CAMBER_NO_BOX ? ~0u : 0u;
+        const camber_u32 box = boxes[k], brush = brushes[k], undrawn = box == CAMBER_NO_BOX ? ~0u : 0u;
         const camber_u32 fx = CAMBER_BOX_FIRST_X(box), fy = CAMBER_BOX_FIRST_Y(box) | undrawn,
                          lx = CAMBER_BOX_LAST_X(box), ly = CAMBER_BOX_LAST_Y(box), which = k | undrawn;
         x0 = CAMBER_LESS(x0, fx);

@@ -311,7 +311,7 @@ CAMBER_KERNEL(1, setup,
         if ((i + CAMBER_LANES) % 16 != 0 || !(r.makes_edges || r.among_edges))
             continue;
         const size_t sixteen = at / 16 * 16;
-        bunches[at / 16] =
-            r.makes_edges ? camber_bunch_of(boxes + sixteen, edges + camber_edge_brush(sixteen)) : CAMBER_NO_BUNCH;
+        global const camber_u32 *brushes = (global const camber_u32 *)edges + camber_edge_brush(sixteen);
+        bunches[at / 16] = r.makes_edges ? camber_bunch_of(boxes + sixteen, brushes) : CAMBER_NO_BUNCH;
     }
 }

@@ -7,8 +7,8 @@ class Camber < Formula
   license "MIT"
 
   depends_on "cmake" => :build
+  depends_on "llvm" => :build # clang compiles the kernels
   depends_on "ninja" => :build
-  depends_on "opencl-headers" => :build
   depends_on "pkgconf" => :build
   depends_on "cairo"
   depends_on "fontconfig"
@@ -23,10 +23,7 @@ class Camber < Formula
   depends_on "libpng"
   depends_on :linux
   depends_on "lz4"
-  depends_on "mesa"
   depends_on "mesa-glu" # areas of mesh tiles
-  depends_on "opencl-icd-loader"
-  depends_on "pocl"
   depends_on "protobuf-c"
   depends_on "sqlite"
   depends_on "webp"

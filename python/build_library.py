@@ -1,7 +1,8 @@
 """The extension camber._library: cffi reads the public headers, and the compiler checks its declarations.
 
 No declaration is copied, so after a change to a header the extension either follows it or does not build. The headers
-and libraries are those that pkg-config finds, or those of the build folder in CAMBER_BUILD and of its source tree.
+and libraries are those of the build folder in CAMBER_BUILD and of its source tree, or those that pkg-config finds, or
+else those that build_inside.py builds.
 """
 
 import os
@@ -12,11 +13,14 @@ import sys
 
 from cffi import FFI
 
+import build_inside
+
 HEADERS = ("camber.h", "camber_files.h", "camber_network.h", "camber_proof.h", "camber_text.h",
            "camber_map.h", "camber_tiles.h", "camber_print.h")
 
 # Rows with straight (not premultiplied) alpha are written to an array by C code, and pages to a file, without Python and
-# its lock.
+# its lock. Points are read once for their box, and once to become pixels: numpy would read pairs six times.
+# And lines are read from GEOS, for Shapely 1, which hands them out one by one.
 HELPERS = """
 typedef struct camber_python_picture {
     uint8_t *rgba;
@@ -28,6 +32,18 @@ void camber_python_premultiply(const uint8_t *from, uint8_t *to, size_t count);
 void *camber_python_open(const char *path);
 bool camber_python_write(void *file, const void *bytes, size_t size_bytes);
 bool camber_python_close(void *file);
+void camber_python_bound(const double *points, size_t count, double box[4]);
+void camber_python_fit(const double *points, size_t count, const double to[5], float *pixels);
+typedef struct camber_python_geos {
+    void *handle;
+    int (*get_type)(void *handle, const void *geometry);
+    const void *(*get_sequence)(void *handle, const void *geometry);
+    int (*get_size)(void *handle, const void *sequence, unsigned *size);
+    int (*copy)(void *handle, const void *sequence, double *to, int has_z, int has_m);
+} camber_python_geos;
+bool camber_python_count(const camber_python_geos *geos, const uintptr_t *lines, size_t count, uint64_t *offsets);
+bool camber_python_copy(const camber_python_geos *geos, const uintptr_t *lines, size_t count, const uint64_t *offsets,
+                        double *points);
 """
 
 SOURCE = """
@@ -67,6 +83,55 @@ bool camber_python_write(void *file, const void *bytes, size_t size_bytes) {
 
 bool camber_python_close(void *file) {
     return fclose(file) == 0;
+}
+
+/* Extends a box (west, south, east, north) to the points whose x and y are both finite. */
+void camber_python_bound(const double *points, size_t count, double box[4]) {
+    double west = box[0], south = box[1], east = box[2], north = box[3];
+    for (size_t i = 0; i < count; i++) {
+        const double x = points[2 * i], y = points[2 * i + 1];
+        const bool is_finite = x - x + (y - y) == 0;
+        west = is_finite && x < west ? x : west;
+        south = is_finite && y < south ? y : south;
+        east = is_finite && x > east ? x : east;
+        north = is_finite && y > north ? y : north;
+    }
+    box[0] = west, box[1] = south, box[2] = east, box[3] = north;
+}
+
+/* to: the centre, pixels per unit, half the picture's width and height. y points up in the points, down in the pixels. */
+void camber_python_fit(const double *points, size_t count, const double to[5], float *pixels) {
+    for (size_t i = 0; i < count; i++) {
+        pixels[2 * i] = (float)((points[2 * i] - to[0]) * to[2] + to[3]);
+        pixels[2 * i + 1] = (float)((points[2 * i + 1] - to[1]) * -to[2] + to[4]);
+    }
+}
+
+/* Reads GEOS's lines: first where each of them begins, then their points. Shapely's empty line is a collection. False:
+ * GEOS failed. */
+bool camber_python_count(const camber_python_geos *geos, const uintptr_t *lines, size_t count, uint64_t *offsets) {
+    bool is_read = true;
+    offsets[0] = 0;
+    for (size_t i = 0; i < count && is_read; i++) {
+        const void *line = (const void *)lines[i];
+        unsigned size = 0;
+        if (geos->get_type(geos->handle, line) == 1) {
+            const void *sequence = geos->get_sequence(geos->handle, line);
+            is_read = sequence && geos->get_size(geos->handle, sequence, &size);
+        }
+        offsets[i + 1] = offsets[i] + size;
+    }
+    return is_read;
+}
+
+bool camber_python_copy(const camber_python_geos *geos, const uintptr_t *lines, size_t count, const uint64_t *offsets,
+                        double *points) {
+    bool is_read = true;
+    for (size_t i = 0; i < count && is_read; i++)
+        if (offsets[i] < offsets[i + 1])
+            is_read = geos->copy(geos->handle, geos->get_sequence(geos->handle, (const void *)lines[i]),
+                                 points + 2 * offsets[i], 0, 0);
+    return is_read;
 }
 """
 
@@ -117,25 +182,27 @@ def pkg_config(*arguments):
 
 
 def locate():
-    """Returns (folder of the headers, folder of the libraries, whether the linker needs the latter as an option)."""
+    """Returns (folder of the headers, folder of the libraries, folders that the loader searches besides its own)."""
     build = os.environ.get("CAMBER_BUILD")
     if build:
         with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
             tree = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", file.read(), re.M).group(1)
-        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), False
+        return os.path.join(tree, "src"), os.path.join(os.path.abspath(build), "src"), []
+    if build_inside.is_wanted():
+        return "src", build_inside.LIBRARIES, [build_inside.RUN_PATH]
     libraries = pkg_config("--variable=libdir")
-    return pkg_config("--variable=includedir"), libraries, not libraries.startswith("/usr/lib")
+    return pkg_config("--variable=includedir"), libraries, [] if libraries.startswith("/usr/lib") else [libraries]
 
 
 def make_builder():
-    include, libraries, is_elsewhere = locate()
+    include, libraries, searched = locate()
     made = FFI()
     for name in HEADERS:
         with open(os.path.join(include, name), encoding="utf-8") as file:
             made.cdef(declarations(file.read()))
     made.cdef(re.sub(r"/\*.*?\*/", "", HELPERS) + ARROW + CALLBACKS)
     made.set_source("camber._library", ARROW + SOURCE, include_dirs=[include], library_dirs=[libraries],
-                    libraries=["camber-map", "camber"], runtime_library_dirs=[libraries] if is_elsewhere else [],
+                    libraries=["camber-map", "camber"], runtime_library_dirs=searched,
                     extra_compile_args=["-std=c11"])
     return made
 

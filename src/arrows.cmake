@@ -1,6 +1,6 @@
 # cmake -DFOLDER=src/NAME "-DREACH=NAME|..." -DSTAMP=FILE -P arrows.cmake: fails where a file of a layer includes one of
 # a layer that it does not link. Headers of src itself are public, and kernels/ is read by hosts and devices alike.
-cmake_policy(VERSION 3.22)
+cmake_policy(VERSION 3.18)
 string(REPLACE "|" ";" reach "${REACH};kernels")
 get_filename_component(layer ${FOLDER} NAME)
 file(GLOB_RECURSE files ${FOLDER}/*.c ${FOLDER}/*.h)

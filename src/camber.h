@@ -455,6 +455,9 @@ typedef struct camber_renderer camber_renderer;
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
                                                 const camber_renderer_desc *desc, camber_renderer **renderer);
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
+/* Releases the memory that kernels keep for the next frame, which then allocates it again. Call it before work that
+ * needs the memory, such as encoding the picture. */
+CAMBER_API void camber_renderer_trim(camber_renderer *renderer);
 /* Returns the sharing path in use. CAMBER_SHARING_AUTO: there is no surface, so nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
 /* Returns the rasterizer that draws: GL or OpenCL, never AUTO. */

@@ -132,7 +132,8 @@ CAMBER_API void camber_style_report_destroy(camber_style_report *report);
 typedef struct camber_source_desc {
     /* Anything that OGR opens, including "/vsigzip/..."; a .gz file is opened through it. camber reads some formats
      * without GDAL: vector tiles in MBTiles and PMTiles, known by their endings, at the highest zoom and only if there
-     * is no filter; and the lines of an OpenStreetMap PBF, whatever its name, with several threads. */
+     * is no filter; the lines of an OpenStreetMap PBF, whatever its name, with several threads; and, if GDAL cannot be
+     * loaded, GeoJSON without a filter. */
     const char *path;
     /* The layer to read. NULL: OSM's "lines"; in a vector tile set the layers that the style names, or, if the set has
      * none of them, its road layer, or else all; in other files every layer from which the style draws something. */

@@ -8,9 +8,10 @@ BUILD is a configured build folder; its tests/manifest.txt has a line a test (te
 A test covers the layers that its labels name and those below them, by the arrows of camber_layer() in
 src/CMakeLists.txt. A change runs
   - the tests of ./dev test whose layers it reaches;
-  - mutants of the files that changed, and the tests under the sanitizers and the deep ones that name a changed layer, the
-    cheapest first and only so many that a change of everything has an end in time, too;
-  - of all the others one share of seven, which the number of the commit picks, so that each runs within seven commits.
+  - of all the others one share of seven, which the number of the commit picks, so that each runs within seven commits;
+  - in what this leaves of the time, mutants of the files that changed, and the tests under the sanitizers and the deep
+    ones that name a changed layer, the cheapest first. Those that find no time wait for their share: a change of
+    everything takes no longer than one of a kernel.
 A commit of documents alone does not count and has no share: it cannot break what others test.
 
 The base is CAMBER_BASE; without it the newest commit that passed here (./dev notes it), or one that is a day older.
@@ -36,9 +37,10 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
                    r"tests/(CMakeLists\.txt|environment\.cmake|fuzz/CMakeLists\.txt))$")
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
-DEFAULT_COST = 5.0
-# Seconds of a processor for what names a changed layer; the rest of it waits for its share.
-DEEP_SECONDS, SANITIZED_SECONDS, MUTANTS_SECONDS = 900.0, 500.0, 500.0
+DEFAULT_COST = 1.0
+# Seconds of a processor, as costs are: of two processors for 25 minutes without what lint and the build take, or for 16 if
+# a change reaches less than half of ./dev test; and what there is in any case for what names a changed layer.
+SECONDS, SECONDS_OF_LITTLE, LEAST_SECONDS = 3000.0 - 400.0, 1920.0 - 250.0, 400.0
 SECONDS_A_MUTANT, TIMES_UNDER_SANITIZERS = 7.0, 4.0
 
 Test = collections.namedtuple("Test", "name cost fixture is_setup labels")
@@ -179,28 +181,33 @@ def is_named_after(test, stems):
 # ---- Shares ----
 
 
-def is_pinned(test):
-    """Whether it is a share itself: NAME_K is part of share K."""
-    return test.fixture and re.search(r"_[1-7]$", test.name)
+def part_of(test):
+    """K of NAME_K, one of several parts of something that have a build in common; or None."""
+    part = test.fixture and re.search(r"_([0-9])$", test.name)
+    return part and int(part.group(1))
+
+
+def build_costs(tests):
+    """Fixture -> what its build costs."""
+    return {test.name.removesuffix("_build"): test.cost for test in tests if test.is_setup}
 
 
 def assign_shares(tests):
-    """Name -> share, 0 to SHARES - 1, of like cost; tests that one build serves stay together. What a change alone runs,
-    what only the sanitizers run, and builds have none."""
+    """Name -> share, 0 to SHARES - 1, of like cost, those of ./dev test and the others each for themselves: a change may
+    run all of the former. Tests that one build serves stay together; of something in parts two do, for two processors.
+    What a change alone runs, what only the sanitizers run, and builds have none."""
     shares, groups = {}, collections.defaultdict(list)
     for test in tests:
         if test.is_setup or test.name.endswith("_changed") or "instrumented" in test.labels:
             continue
-        if is_pinned(test):
-            shares[test.name] = int(test.name[-1]) % SHARES
-        else:
-            groups[test.fixture or test.name].append(test)
-    built = {test.name.removesuffix("_build"): test.cost for test in tests if test.is_setup}
-    costs = {key: sum(test.cost for test in group) + built.get(key, 0) for key, group in groups.items()}
-    loads = [0.0] * SHARES
+        groups[(test.fixture, ((part_of(test) or 1) + 1) // 2) if test.fixture else (test.name, 0)].append(test)
+    built = build_costs(tests)
+    costs = {key: sum(test.cost for test in group) + built.get(group[0].fixture, 0) for key, group in groups.items()}
+    loads = {True: [0.0] * SHARES, False: [0.0] * SHARES}
     for key in sorted(groups, key=lambda key: (-costs[key], key)):
-        share = loads.index(min(loads))
-        loads[share] += costs[key]
+        loaded = loads[groups[key][0].labels[0] in EVERYDAY]
+        share = loaded.index(min(loaded))
+        loaded[share] += costs[key]
         shares.update((test.name, share) for test in groups[key])
     return shares
 
@@ -218,14 +225,35 @@ def count_mutants(root, changed):
         return sum(name in changed for name in re.findall(r"^mutant \w+ (\S+) ", file.read(), re.M))
 
 
-def take_cheapest(tests, seconds, times=1.0):
-    """The names of as many of the tests as take so many seconds."""
-    taken = set()
-    for test in sorted(tests, key=lambda test: (test.cost, test.name)):
-        seconds -= times * test.cost
-        if seconds >= 0:
-            taken.add(test.name)
-    return taken
+class Budget:
+    """The seconds of a change that its tests of ./dev test and its share leave for what names a changed layer."""
+
+    def __init__(self, tests, reached, due):
+        self.builds = build_costs(tests)
+        everyday = sum(test.cost for test in tests if test.labels[0] in EVERYDAY)
+        spent = sum(test.cost for test in tests if test.name in reached)
+        limit = SECONDS if 2 * spent > everyday else SECONDS_OF_LITTLE
+        self.left = limit - spent
+        for test in tests:
+            if test.name in due:
+                self.left -= test.cost + self.build(test.fixture)
+        self.left = max(self.left, LEAST_SECONDS)
+
+    def build(self, fixture):
+        """What is to be built for it, once."""
+        return self.builds.pop(fixture, 0.0)
+
+    def take(self, seconds, fixture):
+        """Whether so much is left; then it is taken."""
+        if seconds == 0 or seconds + self.builds.get(fixture, 0.0) > self.left:
+            return False
+        self.left -= seconds + self.build(fixture)
+        return True
+
+    def take_cheapest(self, tests, fixture=None, times=1.0):
+        """The names of those that are taken."""
+        return {test.name for test in sorted(tests, key=lambda test: (test.cost, test.name))
+                if self.take(times * test.cost, fixture or test.fixture)}
 
 
 def choose(root, tests, changed, number, recipes=()):
@@ -248,26 +276,24 @@ def choose(root, tests, changed, number, recipes=()):
             is_reached = (label == "tree" or "build" in areas or covered & areas or is_named_after(test.name, stems) or
                           label == "tool" and "cli" in areas)
         elif label == "recipes":
-            is_reached = "packaging" in named & areas or named & {"recipe-" + name for name in recipes}
+            is_reached = bool(named & {"recipe-" + name for name in recipes})
         else:
             is_reached = False
-            if direct and not is_pinned(test):
-                deep.append(test)
+        if direct and label not in EVERYDAY and not is_reached and not part_of(test):
+            deep.append(test)
         if is_reached:
             reached.add(test.name)
-    reached |= take_cheapest(deep, DEEP_SECONDS)
-    sanitized = take_cheapest(sanitized, SANITIZED_SECONDS, TIMES_UNDER_SANITIZERS)
-    if 0 < count_mutants(root, changed) * SECONDS_A_MUTANT <= MUTANTS_SECONDS:
+    due = set() if number is None else {name for name in set(shares) - reached if shares[name] == number % SHARES}
+    budget = Budget(tests, reached, due)
+    if budget.take(count_mutants(root, changed) * SECONDS_A_MUTANT, "mutations"):
         reached.add("mutations_changed")
+    reached |= budget.take_cheapest([test for test in deep if test.name not in due])
+    sanitized = budget.take_cheapest(sanitized, "sanitize", TIMES_UNDER_SANITIZERS)
     if sanitized:
         reached.add("sanitize_changed")
-    waiting, share = collections.defaultdict(list), set()
-    for name in sorted(set(shares) - reached):
-        commits = None if number is None else (shares[name] - number) % SHARES
-        if commits == 0:
-            share.add(name)
-        else:
-            waiting[commits].append(name)
+    waiting, share = collections.defaultdict(list), due - reached
+    for name in sorted(set(shares) - reached - share):
+        waiting[None if number is None else (shares[name] - number) % SHARES].append(name)
     return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed))
 
 

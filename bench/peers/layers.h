@@ -21,7 +21,7 @@ typedef struct bench_layer {
     float opacity; /* of the whole layer */
 } bench_layer;
 
-/* Draws the layers by one thread. Gives the milliseconds from Mapnik's own form of them to the picture in memory; below
+/* Draws the layers by stripes. Gives the milliseconds from Mapnik's own form of them to the picture in memory; below
  * 0 where it failed. */
 double bench_mapnik_layers(const bench_layer *layers, size_t count, camber_color background, uint8_t *rgba);
 

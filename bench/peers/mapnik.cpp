@@ -1,5 +1,5 @@
 /* Mapnik's renderer over lines or areas in memory: a symbolizer as a style would have it, neither simplified nor
- * smoothed. */
+ * smoothed; by one thread, and by stripes, each a map of its own over the same lines. */
 #include "peers/labels.h"
 #include "peers/layers.h"
 #include "peers/peer.h"
@@ -23,6 +23,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -125,7 +126,55 @@ double draw(const bench_peer_frame *frame) {
     }
 }
 
+/* ---- Stripes ---- */
+
+struct stripe {
+    mapnik::Map map;
+    mapnik::image_rgba8 image;
+};
+
+bool draw_stripe(void *user, std::size_t part) {
+    stripe &one = (*static_cast<std::vector<stripe> *>(user))[part];
+    try {
+        one.image = mapnik::image_rgba8(BENCH_SIDE_PX, static_cast<int>(one.map.height()));
+        mapnik::agg_renderer<mapnik::image_rgba8> renderer(one.map, one.image);
+        renderer.apply();
+        return true;
+    } catch (const std::exception &) {
+        return false;
+    }
+}
+
+/* Each thread draws rows of the map, which is of the whole picture: a copy of it has the same layers' lines. Lines
+ * beside its rows reach into them by up to buffer_px. */
+double render_stripes(const mapnik::Map &map, int buffer_px, uint8_t *rgba) {
+    std::vector<stripe> stripes;
+    for (std::size_t i = 0; i < bench_stripe_count(); i++) {
+        const int first = bench_stripe_first_row(i), end = bench_stripe_first_row(i + 1);
+        stripes.push_back({map, {}});
+        stripes[i].map.resize(BENCH_SIDE_PX, end - first);
+        stripes[i].map.set_buffer_size(buffer_px);
+        stripes[i].map.zoom_to_box(mapnik::box2d<double>(0, BENCH_SIDE_PX - end, BENCH_SIDE_PX, BENCH_SIDE_PX - first));
+    }
+    const double ms = bench_stripes_draw(draw_stripe, &stripes);
+    for (const stripe &one : stripes) {
+        std::memcpy(rgba, one.image.bytes(), one.image.size());
+        rgba += one.image.size();
+    }
+    return ms;
+}
+
+double draw_stripes(const bench_peer_frame *frame) {
+    try {
+        return render_stripes(make_map(*frame), static_cast<int>(frame->width_px) + 1, frame->rgba);
+    } catch (const std::exception &) {
+        return -1;
+    }
+}
+
 /* ---- Layers of a style ---- */
+
+constexpr int LAYERS_BUFFER_PX = 64; /* no style has wider lines */
 
 mapnik::color color_of(const camber_color &color) {
     const auto level = [](float share) { return static_cast<uint8_t>(255 * share + 0.5f); };
@@ -250,7 +299,7 @@ extern "C" double bench_mapnik_layers(const bench_layer *layers, std::size_t cou
         for (std::size_t i = 0; i < count; i++)
             add_layer(map, layers[i], std::to_string(i));
         map.zoom_to_box(mapnik::box2d<double>(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX));
-        return render(map, rgba);
+        return render_stripes(map, LAYERS_BUFFER_PX, rgba);
     } catch (const std::exception &) {
         return -1;
     }
@@ -264,4 +313,8 @@ extern "C" double bench_mapnik_labels(const bench_labels *labels, uint8_t *rgba)
     }
 }
 
-extern "C" const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "", version, build, draw};
+extern "C" {
+const bench_peer bench_peer_mapnik = {"mapnik", "Mapnik", "one thread", version, build, draw};
+const bench_peer bench_peer_mapnik_stripes = {"mapnik_stripes", "Mapnik", "a stripe per thread",
+                                              version,          build,    draw_stripes};
+}

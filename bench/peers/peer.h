@@ -30,7 +30,7 @@ typedef struct bench_peer {
     const char *name; /* "Cairo"; its ways to draw have one name */
     const char *way;  /* "two threads, one path": what tells this way from the library's others; "": it has one */
     const char *(*version)(void);
-    /* "gcc 12.2.0 -O2": what the library was compiled with, as far as it is known. */
+    /* "gcc 12.2.0 -O2": what the library was compiled with, as far as the library tells. */
     const char *(*build)(void);
     /* Gives the milliseconds from the library's own form of the lines in memory to the picture in memory; below 0
      * where it failed. */
@@ -43,6 +43,12 @@ extern const size_t bench_peer_count;
 /* "Mapnik (libmapnik-dev), ...": what is not built in. "": nothing is missing. */
 extern const char *const bench_peers_missing;
 
+/* Whether the lines are those of another frame, from which something has been kept. */
+static inline bool bench_peer_is_same(const bench_peer_frame *a, const bench_peer_frame *b) {
+    return a->lines && a->lines->points == b->lines->points && a->lines->point_count == b->lines->point_count &&
+           a->areas == b->areas && a->width_px == b->width_px;
+}
+
 /* Parts are drawn one after the other, unless everything is one path: lines, or areas with their holes. */
 static inline size_t bench_peer_part_count(const bench_peer_frame *frame) {
     return frame->areas ? frame->area_count : frame->lines->polyline_count;
@@ -52,9 +58,24 @@ static inline size_t bench_peer_first_of(const bench_peer_frame *frame, size_t p
     return frame->areas ? frame->areas[part] : part;
 }
 
-extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik,
-    bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path,
-    bench_peer_blend2d_stripes, bench_peer_blend2d_stripes_kept, bench_peer_thorvg, bench_peer_thorvg_threads;
+/* ---- stripes.c: the benchmark's own threads, for libraries that have none, or whose own do worse ---- */
+
+/* Draws a part of a picture. false: that failed. */
+typedef bool bench_stripe_fn(void *user, size_t part);
+
+/* A stripe per core that the process may use. */
+size_t bench_stripe_count(void);
+/* BENCH_SIDE_PX of the part after the last one. */
+int bench_stripe_first_row(size_t part);
+/* Each thread, of which the caller is the first, draws a stripe. The others are kept from call to call. Gives the
+ * milliseconds until all have ended; below 0: one has failed. */
+double bench_stripes_draw(bench_stripe_fn *draw, void *user);
+
+extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_cairo_stripes,
+    bench_peer_cairo_stripes_path, bench_peer_agg, bench_peer_agg_path, bench_peer_agg_stripes,
+    bench_peer_agg_stripes_path, bench_peer_mapnik, bench_peer_mapnik_stripes, bench_peer_blend2d,
+    bench_peer_blend2d_path, bench_peer_blend2d_threads, bench_peer_blend2d_threads_path, bench_peer_blend2d_stripes,
+    bench_peer_blend2d_stripes_path, bench_peer_blend2d_stripes_kept, bench_peer_thorvg, bench_peer_thorvg_threads;
 
 #ifdef __cplusplus
 }

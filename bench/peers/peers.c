@@ -4,13 +4,18 @@ const bench_peer *const bench_peers[] = {
 #ifdef CAMBER_BENCH_CAIRO
     &bench_peer_cairo,
     &bench_peer_cairo_path,
+    &bench_peer_cairo_stripes,
+    &bench_peer_cairo_stripes_path,
 #endif
 #ifdef CAMBER_BENCH_AGG
     &bench_peer_agg,
     &bench_peer_agg_path,
+    &bench_peer_agg_stripes,
+    &bench_peer_agg_stripes_path,
 #endif
 #ifdef CAMBER_BENCH_MAPNIK
     &bench_peer_mapnik,
+    &bench_peer_mapnik_stripes,
 #endif
 #ifdef CAMBER_BENCH_BLEND2D
     &bench_peer_blend2d,
@@ -18,6 +23,7 @@ const bench_peer *const bench_peers[] = {
     &bench_peer_blend2d_threads,
     &bench_peer_blend2d_threads_path,
     &bench_peer_blend2d_stripes,
+    &bench_peer_blend2d_stripes_path,
     &bench_peer_blend2d_stripes_kept,
 #endif
 #ifdef CAMBER_BENCH_THORVG

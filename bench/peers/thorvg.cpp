@@ -1,12 +1,11 @@
-/* ThorVG's CPU engine, a shape a polyline or an area: by one thread, and by as many as there are, which outline the
- * shapes while the calling one fills them. All polylines in one shape take some 40 times as long, so that way is left
- * out: the cells of a row are a list that is walked for each cell. */
+/* ThorVG's CPU engine, a shape a polyline or an area: by one thread, and by as many as there are cores: the
+ * calling one fills the shapes that the others outline. All polylines in one shape take some 40 times as long, so that
+ * way is left out: the cells of a row are a list that is walked for each cell. */
 #include "peers/peer.h"
 
 #include <thorvg.h>
 
 #include <chrono>
-#include <thread>
 #include <vector>
 
 namespace {
@@ -75,7 +74,7 @@ double draw_alone(const bench_peer_frame *frame) {
 }
 
 double draw_threads(const bench_peer_frame *frame) {
-    return draw(frame, std::thread::hardware_concurrency());
+    return draw(frame, static_cast<unsigned>(bench_stripe_count()) - 1);
 }
 
 const char *version() {
@@ -90,5 +89,6 @@ const char *build() {
 
 extern "C" {
 const bench_peer bench_peer_thorvg = {"thorvg", "ThorVG", "one thread", version, build, draw_alone};
-const bench_peer bench_peer_thorvg_threads = {"thorvg_threads", "ThorVG", "threads", version, build, draw_threads};
+const bench_peer bench_peer_thorvg_threads = {"thorvg_threads", "ThorVG", "a thread per core",
+                                              version,          build,    draw_threads};
 }

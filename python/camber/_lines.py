@@ -11,7 +11,7 @@ import sys
 import numpy
 
 from ._core import ArgumentError
-from ._library import ffi
+from ._library import ffi, lib
 
 
 class Lines:
@@ -76,7 +76,7 @@ def as_lines(points, offsets, dtype, offset_dtype, dots=False):
         lines = Lines(points, offsets)
     elif hasattr(points, "__arrow_c_array__"):
         lines = from_arrow(points)
-    elif hasattr(points, "geom_type") or hasattr(points, "geometry"):
+    elif hasattr(type(points), "geom_type") or hasattr(points, "geometry"):  # of its class: a GeoSeries takes a second
         lines = from_geometries(points, dots)
     elif hasattr(points, "__arrow_c_stream__"):
         lines = from_arrow_stream(points)
@@ -204,21 +204,27 @@ def from_each(geometries, dots):
 
 
 def from_linestrings(geometries):
-    """Converts linestrings by their WKB, which is twice as fast in Shapely 1. None: there is something else among them."""
-    if not len(geometries) or any(type(each).__name__ != "LineString" for each in geometries):
+    """Converts linestrings of Shapely 1 by GEOS's functions, which is twenty times as fast. None: there is something else
+    among them, or GEOS is older than 3.10."""
+    if not len(geometries) or {type(each).__name__ for each in geometries} != {"LineString"}:
         return None
     geos = importlib.import_module("shapely.geos")
-    writer = geos.WKBWriter(geos.lgeos)
-    pieces = [writer.write(each) for each in geometries]
-    sizes = numpy.fromiter(map(len, pieces), numpy.int64, len(pieces))
-    data = numpy.frombuffer(b"".join(pieces), numpy.uint8)
-    heads = (numpy.cumsum(sizes) - sizes)[:, None] + numpy.arange(9)  # order of bytes, type, number of points
-    if (data[heads[:, :5]] != (1, 2, 0, 0, 0)).any():
-        return None  # 3-D, or of another order
-    is_point = numpy.ones(len(data), bool)
-    is_point[heads] = False
-    offsets = numpy.concatenate([[0], numpy.cumsum((sizes - 9) // 16)])
-    return Lines(data[is_point].view("<f8").reshape(-1, 2), offsets, numpy.arange(len(pieces)), len(pieces))
+    names = "GEOSGeomTypeId_r", "GEOSGeom_getCoordSeq_r", "GEOSCoordSeq_getSize_r", "GEOSCoordSeq_copyToBuffer_r"
+    try:
+        functions = [ctypes.cast(getattr(geos._lgeos, name), ctypes.c_void_p).value for name in names]
+        handles = numpy.fromiter((each.__geom__ for each in geometries), numpy.uintp, len(geometries))
+    except AttributeError:
+        return None
+    calls = ffi.new("camber_python_geos *", [ffi.cast(kind, at) for kind, at in zip(
+        (field.type for _, field in ffi.typeof("camber_python_geos").fields), (geos.lgeos.geos_handle, *functions))])
+    lines, offsets = ffi.from_buffer("uintptr_t[]", handles), numpy.zeros(len(handles) + 1, numpy.uint64)
+    if not lib.camber_python_count(calls, lines, len(handles), ffi.from_buffer("uint64_t[]", offsets)):
+        return None
+    points = numpy.empty((int(offsets[-1]), 2))
+    if not lib.camber_python_copy(calls, lines, len(handles), ffi.from_buffer("uint64_t[]", offsets),
+                                  ffi.from_buffer("double[]", points)):
+        return None
+    return Lines(points, offsets, numpy.arange(len(handles)), len(handles))
 
 
 def from_all(shapely, geometries, dots):
@@ -246,7 +252,7 @@ def from_all(shapely, geometries, dots):
 def from_geometries(geometries, dots=False):
     """Converts one or many geometries of Shapely, a GeoSeries, or the geometries of a GeoDataFrame. dots: points are
     lines of one point."""
-    if hasattr(geometries, "geom_type") and isinstance(geometries.geom_type, str):
+    if hasattr(type(geometries), "wkb"):  # a geometry
         geometries = [geometries]
     else:
         geometries = getattr(geometries, "geometry", geometries)

@@ -8,9 +8,9 @@ import warnings
 import numpy
 
 from ._colors import CATEGORIES, SHADES, as_colors, parse_color, sample
-from ._core import ArgumentError
+from ._core import ArgumentError, ffi, lib
 from ._draw import Network, as_size, draw, encode
-from ._lines import Lines, as_lines, as_values, columns_of
+from ._lines import Lines, as_lines, as_points, as_values, columns_of
 from ._text import Text
 
 MARGIN = 0.02  # of the picture, on each side
@@ -98,13 +98,10 @@ def project_box(bbox, crs, wanted):
 
 def box_of(points):
     """Returns the box around the finite points: west, south, east, north. None: there are none."""
-    if not len(points):
-        return None
-    box = [float(side) for axis in (0, 1) for side in (points[:, axis].min(), points[:, axis].max())]
-    if not all(map(math.isfinite, box)):
-        points = points[numpy.isfinite(points).all(axis=1)]
-        return box_of(points) if len(points) else None
-    return box[0], box[2], box[1], box[3]
+    points = as_points(points, numpy.float64)
+    box = ffi.new("double[4]", [math.inf, math.inf, -math.inf, -math.inf])
+    lib.camber_python_bound(ffi.from_buffer("double[]", points), len(points), box)
+    return tuple(box) if box[0] <= box[2] else None
 
 
 class Fit:
@@ -130,10 +127,10 @@ class Fit:
         return tuple(center + sign * side for sign in (-1, 1) for center, side in zip(self.center, half))
 
     def to_pixels(self, points):
-        pixels = numpy.empty(points.shape, numpy.float32)
-        for axis, scale in (0, self.scale), (1, -self.scale):
-            numpy.add((points[:, axis] - self.center[axis]) * scale, self.size[axis] / 2, out=pixels[:, axis],
-                      casting="unsafe")
+        points, pixels = as_points(points, numpy.float64), numpy.empty(points.shape, numpy.float32)
+        lib.camber_python_fit(ffi.from_buffer("double[]", points), len(points),
+                              [*self.center, self.scale, self.size[0] / 2, self.size[1] / 2],
+                              ffi.from_buffer("float[]", pixels))
         return pixels
 
 

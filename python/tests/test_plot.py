@@ -53,17 +53,19 @@ def test_geometries_all_at_once_are_those_one_by_one():
                 assert numpy.array_equal(a, b)
 
 
-def test_linestrings_by_their_wkb():
+def test_linestrings_by_functions_of_geos():
     shapely = pytest.importorskip("shapely")
     if hasattr(shapely, "get_parts"):
         pytest.skip("for Shapely 1")
-    from shapely.geometry import LineString, MultiLineString
+    from shapely.geometry import LineString, MultiLineString, Polygon
     lines = [LineString(line) for line in LINES]
     for geometries in lines, [*lines, lines[0]]:
         ours, theirs = from_linestrings(geometries), from_each(geometries, False)
         assert (ours.points == theirs.points).all() and (ours.offsets == theirs.offsets).all()
         assert (ours.origins == theirs.origins).all() and ours.origin_count == theirs.origin_count
-    for other in LineString([(0, 0, 1), (1, 1, 1)]), MultiLineString([LINES[0]]), None:
+    of_each = from_linestrings([LineString([(0, 0, 1), (1, 2, 1)]), LineString(), LineString([(3, 4), (5, 6)]), LineString()])
+    assert of_each.points.tolist() == [[0, 0], [1, 2], [3, 4], [5, 6]] and of_each.offsets.tolist() == [0, 2, 2, 4, 4]
+    for other in MultiLineString([LINES[0]]), Polygon([(0, 0), (1, 0), (1, 1)]), None:
         assert from_linestrings([*lines, other]) is None
         assert len(from_geometries([*lines, other])) >= 3
 

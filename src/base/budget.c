@@ -5,6 +5,7 @@
 #define _GNU_SOURCE /* RLIMIT_AS */
 
 #include "base/base.h"
+#include "base/control_group.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -69,31 +70,26 @@ static uint64_t smaller(uint64_t left, uint64_t right) {
     return left < right ? left : right;
 }
 
-/* The memory that the control group (version 2) of the process and the groups above it leave free. */
+/* Lowers *least to what a control group leaves free. */
+static void look_at_group(void *least, const char *folder) {
+    char path[4200];
+    uint64_t most, held = 0, kept = 0;
+    snprintf(path, sizeof path, "%s/memory.max", folder);
+    if (!read_number(path, "", &most))
+        return;
+    snprintf(path, sizeof path, "%s/memory.current", folder);
+    (void)read_number(path, "", &held);
+    /* The kernel gives up cached files when memory is needed, so they count as free. */
+    snprintf(path, sizeof path, "%s/memory.stat", folder);
+    (void)read_number(path, "inactive_file", &kept);
+    held = held > kept ? held - kept : 0;
+    *(uint64_t *)least = smaller(*(uint64_t *)least, most > held ? most - held : 0);
+}
+
+/* The memory that the control group of the process and the groups above it leave free. */
 static uint64_t group_free_bytes(void) {
-    char group[2048] = "", path[4096];
     uint64_t least = UINT64_MAX;
-    FILE *file = fopen("/proc/self/cgroup", "re");
-    while (file && fgets(group, sizeof group, file) && strncmp(group, "0::", 3) != 0)
-        group[0] = 0;
-    if (file)
-        fclose(file);
-    group[strcspn(group, "\n")] = 0;
-    for (char *end = group + strlen(group); group[0] && end; end = strrchr(group + 3, '/')) {
-        uint64_t most, held = 0;
-        *end = 0;
-        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.max", group + 3);
-        if (!read_number(path, "", &most))
-            continue;
-        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", group + 3);
-        (void)read_number(path, "", &held);
-        /* The kernel gives up cached files when memory is needed, so they count as free. */
-        uint64_t kept = 0;
-        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.stat", group + 3);
-        (void)read_number(path, "inactive_file", &kept);
-        held = held > kept ? held - kept : 0;
-        least = smaller(least, most > held ? most - held : 0);
-    }
+    camber_control_group_visit("", look_at_group, &least);
     return least;
 }
 

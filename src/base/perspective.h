@@ -6,6 +6,8 @@
 #ifndef CAMBER_BASE_PERSPECTIVE_H
 #define CAMBER_BASE_PERSPECTIVE_H
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,7 +29,9 @@ static inline double camber_perspective_depth(const camber_perspective *p, doubl
 static inline camber_perspective camber_perspective_of(double pitch_deg, double height_px) {
     const double tan_half_view = 1.0 / 3.0; /* the field of view is 0.6435011087932844 rad */
     const double angle = pitch_deg * (3.14159265358979323846 / 180.0), half = 0.5 * height_px;
-    camber_perspective p = {.cosine = cos(angle), .fall = sin(angle) * tan_half_view / half};
+    camber_perspective p;
+    camber_sine_cosine(angle, &p.fall, &p.cosine);
+    p.fall *= tan_half_view / half;
     const double top = p.cosine - p.fall * half, horizon = 1.0 / (1.0 - 0.85);
     p.nearest = camber_perspective_depth(&p, half);
     p.farthest = 1.01 * (top * horizon > p.cosine ? p.cosine / top : horizon);

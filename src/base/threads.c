@@ -2,7 +2,11 @@
 
 #include "base/threads.h"
 
+#include "base/control_group.h"
+
 #include <sched.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <unistd.h>
 
 size_t camber_cores_count(void) {
@@ -15,8 +19,35 @@ size_t camber_cores_count(void) {
     return online > 0 ? (size_t)online : 1;
 }
 
+/* Lowers *least to the cores that a control group's quota pays for, rounded up. */
+static void look_at_quota(void *least, const char *folder) {
+    char path[4200];
+    unsigned long long quota = 0, period = 0; /* "max" instead of a quota: there is none */
+    size_t *cores = least;
+    snprintf(path, sizeof path, "%s/cpu.max", folder);
+    FILE *file = fopen(path, "re");
+    if (file && fscanf(file, "%llu %llu", &quota, &period) == 2 && quota > 0 && period > 0) {
+        const unsigned long long paid = quota / period + (quota % period != 0);
+        *cores = paid < *cores ? (size_t)paid : *cores;
+    }
+    if (file)
+        fclose(file);
+}
+
+size_t camber_cores_paid(const char *root) {
+    size_t least = SIZE_MAX;
+    camber_control_group_visit(root, look_at_quota, &least);
+    return least;
+}
+
+/* More threads than the quota pays for would stop all of them in the middle of a launch, until the next period. */
+static size_t usable_cores(void) {
+    const size_t cores = camber_cores_count(), paid = camber_cores_paid("");
+    return cores < paid ? cores : paid;
+}
+
 size_t camber_threads_count(size_t asked) {
-    const size_t wanted = asked ? asked : camber_cores_count();
+    const size_t wanted = asked ? asked : usable_cores();
     return wanted < CAMBER_MOST_THREADS ? wanted : CAMBER_MOST_THREADS;
 }
 

@@ -150,6 +150,7 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
     if (w.status != CAMBER_OK)
         status = w.status;
     const double finish_ms = camber_now_ms();
+    camber_renderer_trim(session->renderer); /* this frame is the last, and compressing takes memory too */
     if (status == CAMBER_OK)
         status = finish(&w);
     end(&w);

@@ -240,9 +240,10 @@ void camber_session_start(camber_session *session, camber_outlook outlook, doubl
     if (prepare(session) != CAMBER_OK)
         return;
 #ifdef CAMBER_MAP
-    /* Must run before other threads start, because the loader would wait for them. */
-    if (needs_gdal(session->options) && camber_gdal_load(session->context) != CAMBER_OK)
-        return;
+    /* Loads GDAL before other threads start, because the loader would wait for them. Reading the file says why if it
+     * cannot be loaded. */
+    if (needs_gdal(session->options))
+        (void)camber_gdal_get_version();
 #endif
     camber_opener *opener = calloc(1, sizeof *opener);
     if (!opener)

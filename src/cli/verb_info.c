@@ -37,6 +37,23 @@ static void add_devices(camber_session *session, json_t *object) {
         json_object_set_new(object, "devices_error", take_error(session->report, status));
 }
 
+/* Adds why no device is OpenCL's, if none is although there are others: it is loaded only when it is asked for. */
+static void add_opencl(camber_session *session, json_t *object) {
+    const json_t *list = json_object_get(object, "devices"), *entry;
+    size_t i;
+    json_array_foreach(list, i, entry) {
+        const char *version = json_string_value(json_object_get(entry, "version"));
+        if (version && strncmp(version, "OpenCL", strlen("OpenCL")) == 0)
+            return;
+    }
+    const camber_device_desc desc = {.match = "opencl"};
+    camber_device *device = NULL;
+    const camber_status status = i > 0 ? camber_device_create(session->context, &desc, &device) : CAMBER_OK;
+    camber_device_destroy(device);
+    if (status != CAMBER_OK)
+        json_object_set_new(object, "opencl_error", take_error(session->report, status));
+}
+
 static void add_backends(camber_session *session, json_t *object) {
     static const struct {
         camber_backend backend;
@@ -94,7 +111,7 @@ static void print_formats(const json_t *object) {
     const json_t *list = json_object_get(object, "formats");
     if (json_array_size(list) == 0) {
         printf("formats   polylines in pixels (%s)\n", json_object_get(object, "gdal")
-                                                           ? "GDAL cannot be loaded; reinstall camber and GDAL"
+                                                           ? "GDAL cannot be loaded; install it, and camber again"
                                                            : "this build reads no maps");
         return;
     }
@@ -132,6 +149,8 @@ static void print_text(const json_t *object) {
                json_object_get(object, "devices_error")
                    ? text_of(object, "devices_error")
                    : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
+    if (json_object_get(object, "opencl_error"))
+        printf("OpenCL    not available: %s\n", text_of(object, "opencl_error"));
     json_array_foreach(json_object_get(object, "backends"), i, entry) {
         if (json_is_true(json_object_get(entry, "available")))
             printf("GL        %s: %s, %s, targets up to %lld px\n", text_of(entry, "name"),
@@ -165,6 +184,7 @@ int camber_verb_info(camber_session *session) {
         return camber_report_json(session->report, NULL);
     add_formats(object); /* must come first, because libraries load faster before drivers have started threads */
     add_devices(session, object);
+    add_opencl(session, object);
     add_backends(session, object);
     add_choice(session, object);
     if (session->options->json)

@@ -68,6 +68,13 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     camber_free(context, renderer);
 }
 
+void camber_renderer_trim(camber_renderer *renderer) {
+    if (renderer->raster)
+        camber_raster_trim(renderer->raster);
+    if (renderer->areas)
+        camber_raster_trim(renderer->areas);
+}
+
 camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer) {
     return renderer->path ? renderer->path->sharing : CAMBER_SHARING_AUTO;
 }

@@ -6,6 +6,7 @@
  * would leave a light seam, because each of them covers only a part of the same pixels. Lines that bend there keep
  * their caps.
  */
+#include "base/maths.h"
 #include "features/chains.h"
 #include "features/features.h"
 
@@ -118,7 +119,7 @@ static void find_direction(const merger *m, uint32_t end, double direction[2]) {
         direction[0] = other[0] - at[0];
         direction[1] = other[1] - at[1];
     }
-    const double length = hypot(direction[0], direction[1]);
+    const double length = camber_length(direction[0], direction[1]);
     direction[0] /= length;
     direction[1] /= length;
 }

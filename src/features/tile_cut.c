@@ -7,6 +7,7 @@
  *     a ------------c - - -            A's line, with its buffer
  *             - - - c ------------ b   B's line
  */
+#include "base/maths.h"
 #include "features/tile_stitcher.h"
 
 #include <math.h>
@@ -158,7 +159,7 @@ static camber_status open_line(tile_cut *cut, const double *point, bool is_cut, 
 }
 
 static float progress_at(const tile_cut *cut, const double *p, const double *at) {
-    const double along = cut->done + hypot(at[0] - p[0], at[1] - p[1]);
+    const double along = cut->done + camber_length(at[0] - p[0], at[1] - p[1]);
     return (float)(cut->progress[0] + (cut->progress[1] - cut->progress[0]) * (along / cut->length));
 }
 
@@ -214,7 +215,7 @@ static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_lin
 
 /* Returns the distance to the next point. */
 static double segment_length(const double *point) {
-    return hypot(point[2] - point[0], point[3] - point[1]);
+    return camber_length(point[2] - point[0], point[3] - point[1]);
 }
 
 static camber_status cut_line(tile_cut *cut, const double *points, size_t count, bool outline) {

@@ -4,6 +4,7 @@
  * were made by cutting, they are not points of the feature and are dropped, because the points before and after them
  * were neighbours. Chains of partners become polylines. The time is linear in the number of points.
  */
+#include "base/maths.h"
 #include "features/chains.h"
 #include "features/order.h"
 #include "features/tile_stitcher.h"
@@ -169,7 +170,7 @@ static void drop_crumbs(const joiner *join, double reach) {
     for (uint32_t i = 0; i < stitcher->line_count; i++) {
         camber_cut_line *line = &stitcher->lines[i];
         const double *p = end_point(stitcher, 2 * i);
-        if (line->count == 2 && line->cut[0] && line->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < reach / 2)
+        if (line->count == 2 && line->cut[0] && line->cut[1] && camber_length(p[2] - p[0], p[3] - p[1]) < reach / 2)
             line->count = 0;
     }
 }
@@ -376,7 +377,9 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
 
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features) {
     const size_t joined = features->stats.joined_pieces;
-    const camber_status status = finish(labels, features, features->schema->labels_directed);
+    camber_status status = camber_tile_stitcher_keep_largest(labels, features);
+    if (status == CAMBER_OK)
+        status = finish(labels, features, features->schema->labels_directed);
     features->stats.joined_pieces = joined;
     return status;
 }

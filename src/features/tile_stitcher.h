@@ -1,5 +1,6 @@
 /* The stitcher joins features that were cut by vector tiles. tile_cut.c cuts their lines exactly at the tiles' borders,
- * and tile_join.c joins them across the borders. tile_area.c cuts areas, whose pieces stay separate. */
+ * and tile_join.c joins them across the borders. tile_area.c cuts areas, whose pieces stay separate; tile_label.c
+ * chooses the one that is labelled. */
 #ifndef CAMBER_FEATURES_TILE_STITCHER_H
 #define CAMBER_FEATURES_TILE_STITCHER_H
 
@@ -45,6 +46,9 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
 camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, camber_features *features);
 
 /* ---- Shared by the files of the stitcher ---- */
+
+/* Of the pieces of an area for labels keeps the largest, so that it has one label. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_stitcher_keep_largest(camber_tile_stitcher *labels, const camber_features *features);
 
 /* Coordinates of cut lines are in units of 1/4096 of a tile, from the world's north-west corner. Tiles are rounded to
  * steps of one unit, or of half or double that size. A double represents such numbers exactly at all zooms. */

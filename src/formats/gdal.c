@@ -5,8 +5,9 @@
 #include "features/features.h"
 #include "features/gdal_calls.h"
 
-/* The result is kept, because asking the loader again would block while another thread loads a driver. */
-camber_status camber_gdal_load(camber_context *context) {
+/* The result is kept, because asking the loader again would block while another thread loads a driver. path: the file
+ * that needs GDAL, or NULL. */
+static camber_status load(camber_context *context, const char *path) {
     const char *why = NULL;
     if (!context->gdal)
         context->gdal = camber_gdal_find(&why);
@@ -15,8 +16,14 @@ camber_status camber_gdal_load(camber_context *context) {
     const camber_status status = camber_budget_check_drivers(context);
     if (status != CAMBER_OK)
         return status;
-    return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; reinstall camber and GDAL",
-                       why ? why : "no reason given");
+    return camber_fail(context, CAMBER_ERROR_IO,
+                       "%s%sGDAL cannot be loaded: %s; install it (Debian: gdal-bin), or give a GeoJSON or PBF file, "
+                       "without a filter, which camber reads itself",
+                       path ? path : "", path ? ": it is read by GDAL, and " : "", why ? why : "no reason given");
+}
+
+camber_status camber_gdal_load(camber_context *context) {
+    return load(context, NULL);
 }
 
 static bool knows(const char *path) {
@@ -31,7 +38,7 @@ static bool reads(const camber_source_desc *desc) {
 
 static camber_status read_by_gdal(camber_features *features, const camber_source_desc *desc, bool *declined) {
     *declined = false;
-    const camber_status status = camber_gdal_load(features->context);
+    const camber_status status = load(features->context, desc->path);
     const camber_gdal_calls *calls = features->context->gdal;
     return status == CAMBER_OK ? calls->read(features, desc) : status;
 }

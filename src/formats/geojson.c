@@ -99,9 +99,10 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
 static camber_status find_class(reader *self, const json_t *feature, bool *drawn) {
     const camber_schema *schema = self->features->schema;
     const json_t *properties = json_object_get(feature, "properties");
-    camber_feature_class wanted = {.geometry = self->kind};
+    camber_feature_class wanted = {.geometry = self->kind, .unsorted = self->desc->unsorted};
+    const char *layer = self->desc->layer ? self->desc->layer : "";
     camber_value id = {0};
-    camber_status status = camber_features_find_layer(self->features, "", &wanted.layer);
+    camber_status status = camber_features_find_layer(self->features, layer, &wanted.layer);
     for (size_t i = 0; i < schema->property_count; i++)
         self->values[i] = (camber_value){0};
     for (size_t i = 0; i < schema->property_count && status == CAMBER_OK; i++)

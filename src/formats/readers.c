@@ -2,13 +2,15 @@
  * the request reads the file. It may decline, which leaves the file to the readers after it. */
 #include "features/features.h"
 #include "formats/gdal.h"
+#include "formats/geojson.h"
 #include "formats/tile_reader.h"
 #include "osm/osm.h"
 
 #include <string.h>
 #include <sys/stat.h>
 
-static const camber_reader *const readers[] = {&camber_osm_reader, &camber_tile_file_reader, &camber_gdal_reader};
+static const camber_reader *const readers[] = {&camber_osm_reader, &camber_tile_file_reader,
+                                               &camber_geojson_file_reader, &camber_gdal_reader};
 
 enum { READERS = sizeof readers / sizeof *readers };
 

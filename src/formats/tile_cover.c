@@ -1,5 +1,7 @@
 #include "formats/tile_cover.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 
 static const double MOST_TILES = 65536;
@@ -31,7 +33,7 @@ static bool is_outside(const grid *g, double column, double row) {
             const double x = column + (k & 1) - p[0] * g->side, y = row + (k >> 1) - p[1] * g->side;
             most = fmax(most, (dx * y - dy * x) * (area < 0 ? -1 : 1));
         }
-        if (most <= SLACK * hypot(dx, dy))
+        if (most <= SLACK * camber_length(dx, dy))
             return true;
     }
     return false;

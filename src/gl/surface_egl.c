@@ -1,32 +1,19 @@
 /* Opens EGL without a display: on Mesa's surfaceless platform, else on the first device that provides a GLES 3 context.
  */
+#include "gl/egl.h"
 #include "gl/surface.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <dlfcn.h>
 #include <string.h>
 
 enum { DEVICES_MAX = 16 };
 
-#define EGL_FUNCTIONS(X)                                                                                               \
-    X(EGLBoolean, eglInitialize, (EGLDisplay, EGLint *, EGLint *))                                                     \
-    X(EGLBoolean, eglBindAPI, (EGLenum))                                                                               \
-    X(EGLBoolean, eglChooseConfig, (EGLDisplay, const EGLint *, EGLConfig *, EGLint, EGLint *))                        \
-    X(EGLContext, eglCreateContext, (EGLDisplay, EGLConfig, EGLContext, const EGLint *))                               \
-    X(EGLBoolean, eglDestroyContext, (EGLDisplay, EGLContext))                                                         \
-    X(EGLBoolean, eglMakeCurrent, (EGLDisplay, EGLSurface, EGLSurface, EGLContext))                                    \
-    X(EGLContext, eglGetCurrentContext, (void))                                                                        \
-    X(EGLint, eglGetError, (void))                                                                                     \
-    X(const char *, eglQueryString, (EGLDisplay, EGLint))                                                              \
-    X(camber_function *, eglGetProcAddress, (const char *))
-
 typedef struct egl_state {
     void *library;
     EGLDisplay display;
     EGLContext context;
-#define MEMBER(result, name, parameters) result(*name) parameters;
-    EGL_FUNCTIONS(MEMBER)
+#define MEMBER(result, name, parameters) result(*egl##name) parameters;
+    CAMBER_EGL_FUNCTIONS(MEMBER)
 #undef MEMBER
 } egl_state;
 
@@ -36,11 +23,11 @@ static bool load_library(egl_state *egl) {
         return false;
     void *symbol;
 #define LOAD(result, name, parameters)                                                                                 \
-    symbol = dlsym(egl->library, #name);                                                                               \
+    symbol = dlsym(egl->library, "egl" #name);                                                                         \
     if (!symbol)                                                                                                       \
         return false;                                                                                                  \
-    memcpy(&egl->name, &symbol, sizeof symbol);
-    EGL_FUNCTIONS(LOAD)
+    memcpy(&egl->egl##name, &symbol, sizeof symbol);
+    CAMBER_EGL_FUNCTIONS(LOAD)
 #undef LOAD
     return true;
 }
@@ -58,10 +45,10 @@ static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLCont
                                      EGL_NONE};
     static const EGLint plain[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3, EGL_NONE};
     const char *extensions = egl->eglQueryString(egl->display, EGL_EXTENSIONS);
-    EGLContext made = EGL_NO_CONTEXT;
+    EGLContext made = NULL;
     if (extensions && strstr(extensions, "EGL_EXT_create_context_robustness"))
         made = egl->eglCreateContext(egl->display, config, shared, telling);
-    return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, shared, plain);
+    return made ? made : egl->eglCreateContext(egl->display, config, shared, plain);
 }
 
 /* Makes a context on an initialised display. If it returns false, nothing is left to free but the display. */
@@ -74,38 +61,38 @@ static bool make_context(egl_state *egl, EGLContext shared) {
     if (!egl->eglChooseConfig(egl->display, config_wanted, &config, 1, &count) || count < 1)
         config = NULL; /* EGL_NO_CONFIG_KHR: no surface is ever made */
     egl->context = create_context(egl, config, shared);
-    if (egl->context == EGL_NO_CONTEXT)
+    if (!egl->context)
         return false;
-    if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+    if (egl->eglMakeCurrent(egl->display, NULL, NULL, egl->context))
         return true;
     egl->eglDestroyContext(egl->display, egl->context);
-    egl->context = EGL_NO_CONTEXT;
+    egl->context = NULL;
     return false;
 }
 
 static bool open_display(egl_state *egl, EGLDisplay display, EGLContext shared) {
-    if (display == EGL_NO_DISPLAY || !egl->eglInitialize(display, NULL, NULL))
+    if (!display || !egl->eglInitialize(display, NULL, NULL))
         return false;
     egl->display = display;
     if (make_context(egl, shared))
         return true;
-    egl->display = EGL_NO_DISPLAY; /* the display is not terminated: another surface may use it */
+    egl->display = NULL; /* the display is not terminated: another surface may use it */
     return false;
 }
 
 static bool open_any(camber_surface *surface, egl_state *egl) {
-    PFNEGLGETPLATFORMDISPLAYEXTPROC get_display;
-    PFNEGLQUERYDEVICESEXTPROC query_devices;
+    camber_egl_get_platform_display_fn *get_display;
+    camber_egl_query_devices_fn *query_devices;
     camber_function *function = egl->eglGetProcAddress("eglGetPlatformDisplayEXT");
     memcpy(&get_display, &function, sizeof function);
     function = egl->eglGetProcAddress("eglQueryDevicesEXT");
     memcpy(&query_devices, &function, sizeof function);
-    const char *client = egl->eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    const char *client = egl->eglQueryString(NULL, EGL_EXTENSIONS);
     if (!get_display || !client)
         return false;
     surface->name = "EGL surfaceless";
     if (strstr(client, "EGL_MESA_platform_surfaceless") &&
-        open_display(egl, get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), EGL_NO_CONTEXT))
+        open_display(egl, get_display(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL), NULL))
         return true;
     surface->name = "EGL device";
     EGLDeviceEXT devices[DEVICES_MAX];
@@ -113,7 +100,7 @@ static bool open_any(camber_surface *surface, egl_state *egl) {
     if (!query_devices || !query_devices(DEVICES_MAX, devices, &count))
         return false;
     for (EGLint i = 0; i < count; i++)
-        if (open_display(egl, get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL), EGL_NO_CONTEXT))
+        if (open_display(egl, get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL), NULL))
             return true;
     return false;
 }
@@ -145,9 +132,9 @@ static bool make_current(camber_surface *surface) {
     const egl_state *egl = surface->state;
     /* Always, not only if another context is current: OSMesa replaces the dispatch table without EGL noticing. */
     if (egl->eglGetCurrentContext() == egl->context)
-        egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        egl->eglMakeCurrent(egl->display, NULL, NULL, NULL);
     egl->eglBindAPI(EGL_OPENGL_ES_API);
-    if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+    if (egl->eglMakeCurrent(egl->display, NULL, NULL, egl->context))
         return true;
     surface->lost = egl->eglGetError() == EGL_CONTEXT_LOST;
     return false;
@@ -155,7 +142,7 @@ static bool make_current(camber_surface *surface) {
 
 static void release(camber_surface *surface) {
     const egl_state *egl = surface->state;
-    egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    egl->eglMakeCurrent(egl->display, NULL, NULL, NULL);
 }
 
 static camber_gl_handles handles(const camber_surface *surface) {
@@ -168,7 +155,7 @@ static void destroy(camber_surface *surface) {
     egl_state *egl = surface->state;
     if (!egl)
         return;
-    if (egl->context != EGL_NO_CONTEXT) {
+    if (egl->context) {
         release(surface);
         egl->eglDestroyContext(egl->display, egl->context);
     }

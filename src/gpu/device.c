@@ -27,12 +27,12 @@ static camber_status choose_device(camber_device *device, const camber_device_de
     const camber_status status = camber_find_devices(device->context, desc, &found);
     if (status != CAMBER_OK)
         return status;
+    const char *cure = found.failed.cure;
     if (found.count == 0 && found.failed.name)
         return found.failed.backend->fail(device->context, &found.failed);
     if (found.count == 0)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                           "no device: no OpenCL platform answers; install a driver (Debian: pocl-opencl-icd), "
-                           "and let POCL_CACHE_DIR name a folder that PoCL can write to");
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device: %s",
+                           cure ? cure : "no OpenCL platform has one; install a driver");
     char names[1024] = "";
     uint32_t seen = 0;
     int best = -1;
@@ -56,10 +56,11 @@ static camber_status choose_device(camber_device *device, const camber_device_de
                            "for an OpenCL device; there are: %s",
                            desc->work_group_size, desc->lanes, names);
     if (best < 0 && number)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device number %u matches '%s'; there are: %s",
-                           number, match ? match : "", names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device number %u matches '%s'; there are: %s%s%s",
+                           number, match ? match : "", names, cure ? "; " : "", cure ? cure : "");
     if (best < 0)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device matches '%s'; there are: %s", match, names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no device matches '%s'; there are: %s%s%s", match,
+                           names, cure ? "; " : "", cure ? cure : "");
     return CAMBER_OK;
 }
 

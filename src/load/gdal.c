@@ -1,18 +1,29 @@
 /* Finds GDAL for the shared library, which keeps the files that need GDAL in a separate module. The static library
- * contains them, so there src/gdal/ provides the table. */
-#define _GNU_SOURCE /* dladdr */
+ * contains them, so there src/gdal/ provides the table. A build for systems that differ in their GDAL has a module for
+ * each version (CAMBER_GDAL_SONAMES in CMakeLists.txt); the first one whose GDAL is installed is used. */
+#define _GNU_SOURCE /* dladdr, RTLD_DEEPBIND */
 
 #include "features/gdal_calls.h"
 
 #include <dlfcn.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 static const int MODE = RTLD_LAZY | RTLD_LOCAL;
 
-/* Opens the module by its path: next to this library in the build folder, in a folder next to it after installation. */
-static void *open_next_to_library(void) {
+/* The module, and the GDAL that it needs if it may be missing. */
+static const struct { const char *name, *gdal; } modules[] = {CAMBER_GDAL_MODULES};
+
+/* A GDAL that camber was not built with brings libraries of its own, such as SQLite, of other versions than camber's.
+ * RTLD_DEEPBIND makes it use those. */
+static bool has_gdal(const char *name) {
+    return !name || dlopen(name, MODE | RTLD_DEEPBIND);
+}
+
+/* Opens a module by its path: next to this library in the build folder, in a folder next to it after installation. */
+static void *open_next_to_library(const char *name) {
     static const char *const folders[] = {"", "camber/"};
     Dl_info here;
     void *module = NULL;
@@ -22,20 +33,29 @@ static void *open_next_to_library(void) {
     const int length = slash ? (int)(slash + 1 - here.dli_fname) : 0;
     for (size_t i = 0; i < sizeof folders / sizeof *folders && !module; i++) {
         char path[PATH_MAX];
-        const int size = snprintf(path, sizeof path, "%.*s%s" CAMBER_GDAL_MODULE, length, here.dli_fname, folders[i]);
+        const int size = snprintf(path, sizeof path, "%.*s%s%s", length, here.dli_fname, folders[i], name);
         if (size > 0 && (size_t)size < sizeof path)
             module = dlopen(path, MODE);
     }
     return module;
 }
 
-/* Opens the module through the library's RUNPATH, which a sanitizer's dlopen ignores. The module stays loaded, because
+/* Opens a module through the library's RUNPATH, which a sanitizer's dlopen ignores. The module stays loaded, because
  * GDAL's own threads and caches live as long as the process. */
 const camber_gdal_calls *camber_gdal_find(const char **why) {
-    void *module = dlopen(CAMBER_GDAL_MODULE, MODE);
-    if (!module)
-        module = open_next_to_library();
+    void *module = NULL;
+    for (size_t i = 0; i < sizeof modules / sizeof *modules && !module; i++) {
+        if (!has_gdal(modules[i].gdal))
+            continue;
+        module = dlopen(modules[i].name, MODE);
+        if (!module)
+            module = open_next_to_library(modules[i].name);
+    }
     const camber_gdal_calls *calls = module ? dlsym(module, "camber_gdal") : NULL;
     *why = calls ? NULL : dlerror();
+#ifdef CAMBER_GDAL_WANTED
+    if (!calls) /* the reason is about the oldest version alone */
+        *why = "none of " CAMBER_GDAL_WANTED " can be loaded";
+#endif
     return calls;
 }

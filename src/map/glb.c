@@ -29,6 +29,7 @@
  * is the style table: {width, join, cap, miterLimit, paint: {width, color: straight sRGB RGBA}}. A mesh without
  * vertices becomes a file with an empty scene, because glTF allows no empty accessors. */
 #include "base/base.h"
+#include "base/maths.h"
 #include "camber_map.h"
 #include "camber_proof.h"
 
@@ -132,7 +133,7 @@ static float up(float y) {
 static void position_of(const writer *w, const camber_vertex *v, float *position) {
     assert(v->row < w->desc->stroke_count);
     const double h = 0.5 * (double)w->desc->strokes[v->row].width_px;
-    const double length = hypot((double)v->dx, (double)v->dy);
+    const double length = camber_length((double)v->dx, (double)v->dy);
     const double ux = length > 0.0 ? (double)v->dx / length : 1.0, uy = length > 0.0 ? (double)v->dy / length : 0.0;
     const double limit = (double)v->limit_px;
     const unsigned end = (v->flags & AT_END ? v->flags >> 3 : v->flags) & 7u;

@@ -8,6 +8,7 @@
  *
  * Main idea: a text runs with the line, or against it if it would be upside down. Each cluster of glyphs is turned as a
  * whole about its middle, which is on the line. If the line is steep, texts that may be written downwards are. */
+#include "base/maths.h"
 #include "map/label_layout.h"
 #include "text/clusters.h"
 
@@ -64,7 +65,7 @@ static camber_status walk(camber_label_track *track, const text_line *line, cons
         double next[2];
         if (i >= line->count || !line_point(line, i, next)) /* also before the first one */
             return CAMBER_ERROR_NOT_FOUND;
-        const double length = hypot(next[0] - at[0], next[1] - at[1]);
+        const double length = camber_length(next[0] - at[0], next[1] - at[1]);
         memcpy(at, next, sizeof at);
         distance += length;
         if (length > 0.0 && !push(track, at, side.sign * distance))

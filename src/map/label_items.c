@@ -1,6 +1,7 @@
 /* Makes the items of labels that are shown.
  *
  * Input: candidates after placement. Output: for each glyph and icon, how it is drawn in the picture. */
+#include "base/maths.h"
 #include "map/label_layout.h"
 #include "text/clusters.h"
 
@@ -131,7 +132,7 @@ static camber_status add_icon(item_maker *m, const camber_label_candidate *c, ui
     snap_image(l, &item);
     if (rule->symbol.text_fit != CAMBER_FIT_NONE && form->text)
         item.unstretched_px = (float)(l->view->ratio * (l->window ? l->window->scale : 1.0) / form->icon->pixel_ratio *
-                                      hypot(frame.xx, frame.yx));
+                                      camber_length(frame.xx, frame.yx));
     return add_item(m, &item);
 }
 
@@ -209,9 +210,11 @@ static camber_label_frame frame_on(const item_maker *m, const camber_label_rule 
         sine = m->track.vertical ? -point.cosine : point.sine;
     }
     if (rule->text_turn != 0.0) {
-        const double c = cosine * cos(rule->text_turn) - sine * sin(rule->text_turn);
-        sine = cosine * sin(rule->text_turn) + sine * cos(rule->text_turn);
-        cosine = c;
+        double s, c;
+        camber_sine_cosine(rule->text_turn, &s, &c);
+        const double turned = cosine * c - sine * s;
+        sine = cosine * s + sine * c;
+        cosine = turned;
     }
     const double scale = m->track.size / rule->text_px;
     return (camber_label_frame){.x = point.x,

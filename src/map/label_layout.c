@@ -5,6 +5,8 @@
  * differ only in their place keeps these results, too. */
 #include "map/label_layout.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 
 /* How far outside the picture an anchor may be if its label reaches into the picture, CSS px. */
@@ -33,7 +35,7 @@ typedef struct layout_maker {
 
 double camber_label_whole_zoom_px(const camber_view *view) {
     const double zoom = camber_view_style_zoom(view);
-    return view->ratio * exp2(zoom - floor(zoom));
+    return view->ratio * camber_exp2(zoom - floor(zoom));
 }
 
 /* Returns the box around the quadrangle that is seen. */
@@ -212,7 +214,7 @@ static camber_status read_path(layout_maker *m, size_t polyline, bool *reversed)
         to[1] = (at[1] - m->origin[1]) * scale;
         *along = 0.0;
         if (m->path.count) {
-            const double step = hypot(to[0] - to[-2], to[1] - to[-1]);
+            const double step = camber_length(to[0] - to[-2], to[1] - to[-1]);
             if (!(along[-1] + step > along[-1]))
                 continue;
             *along = along[-1] + step;

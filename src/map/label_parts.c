@@ -2,6 +2,7 @@
  *
  * Input: a candidate. Output: boxes in px from the anchor, as if nothing were turned, and the frame that turns them,
  * moves them to the anchor, and makes them smaller with their distance from the camera. */
+#include "base/maths.h"
 #include "map/label_layout.h"
 
 #include <math.h>
@@ -42,14 +43,16 @@ static camber_label_frame make_frame(const camber_label_layout *layout, const do
         double ahead[2] = {plane[0] + direction[0], plane[1] + direction[1]}, to[2] = {ahead[0], ahead[1]};
         if (!flat)
             (void)depth_of(layout, ahead, to);
-        const double length = hypot(to[0] - frame.x, to[1] - frame.y);
+        const double length = camber_length(to[0] - frame.x, to[1] - frame.y);
         cosine = length > 0.0 ? (to[0] - frame.x) / length : 1.0;
         sine = length > 0.0 ? (to[1] - frame.y) / length : 0.0;
     }
     if (turn != 0.0) {
-        const double c = cosine * cos(turn) - sine * sin(turn);
-        sine = cosine * sin(turn) + sine * cos(turn);
-        cosine = c;
+        double s, c;
+        camber_sine_cosine(turn, &s, &c);
+        const double turned = cosine * c - sine * s;
+        sine = cosine * s + sine * c;
+        cosine = turned;
     }
     frame.xx = scale * cosine;
     frame.yx = scale * sine;
@@ -79,7 +82,7 @@ camber_label_frame camber_label_icon_frame(const camber_label_layout *layout, co
     const camber_label_line *line = layout->lines + c->line;
     const float *a = layout->line_points + 2 * (line->first + c->segment);
     double ahead[2] = {(double)a[2] - (double)a[0], (double)a[3] - (double)a[1]};
-    const double length = hypot(ahead[0], ahead[1]);
+    const double length = camber_length(ahead[0], ahead[1]);
     const bool turns = line->reversed != (rule->symbol.icon.keep_upright && (ahead[0] < 0.0) != line->reversed);
     for (int i = 0; i < 2 && length > 0.0; i++)
         ahead[i] *= (turns ? -1.0 : 1.0) / length;

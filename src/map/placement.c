@@ -7,6 +7,7 @@
  * In a domain, labels outside it are not known, and may be in the way of those near its edges. So a label is unsettled
  * if a label outside might meet it, or if it meets what an earlier unsettled label may show. All others are settled: a
  * larger domain would give the same result. */
+#include "base/maths.h"
 #include "map/collision.h"
 #include "map/label_layout.h"
 
@@ -116,7 +117,7 @@ static bool is_said_near(const said_list *list, uint64_t words, double x, double
         const uint64_t key = said_key(words, x + (i % 3 - 1) * distance, y + (i / 3 - 1) * distance, distance);
         for (uint32_t s = list->slots[key & (list->slot_count - 1)]; s; s = list->items[s - 1].next) {
             const said *other = list->items + s - 1;
-            if (other->key == key && hypot(other->x - x, other->y - y) < distance)
+            if (other->key == key && camber_length(other->x - x, other->y - y) < distance)
                 return true;
         }
     }

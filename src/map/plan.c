@@ -7,6 +7,8 @@
  * does not grow with the number of features. */
 #include "map/plan.h"
 
+#include "base/maths.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -377,7 +379,7 @@ static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dash
  * width up to the next integer zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
-    const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
+    const double grown = camber_exp2(camber_view_style_zoom(view) - layer->below.zoom);
     return (float)fmin(fmax(camber_layer_look_paint(&layer->below, feature).width * grown * view->ratio, 1e-3),
                        WIDEST_PX);
 }

@@ -5,6 +5,7 @@
  * can be used for other views as long as their plans draw the same entries. */
 #include "map/plan_network.h"
 
+#include "base/maths.h"
 #include "camber_proof.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static copies copies_in(const camber_view *view, const camber_plan *plan) {
     double corners[8], radius = 0.0;
     camber_view_corners(view, corners);
     for (int i = 0; i < 4; i++)
-        radius = fmax(radius, hypot(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
+        radius = fmax(radius, camber_length(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
     radius += (camber_plan_reach(plan) + 1.0) / view->scale_px;
     radius = fmin(radius, MOST_WORLDS);
     return (copies){floor(view->x - radius), floor(view->x + radius), false};

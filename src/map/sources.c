@@ -16,8 +16,6 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
-enum { JSON_BYTES_A_BYTE = 8 };
-
 typedef struct source {
     const camber_style_source *style;
     uint32_t index;
@@ -82,11 +80,9 @@ static camber_status load_json(camber_context *context, const char *what, const 
     camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &text, &size);
     if (status != CAMBER_OK)
         return status;
-    /* jansson's memory does not come from the context. Parsed coordinates take about seven times as much memory as
-     * their text. */
-    if (!camber_budget_has(context, JSON_BYTES_A_BYTE * (uint64_t)size)) {
+    if (!camber_budget_has(context, CAMBER_GEOJSON_BYTES_A_BYTE * (uint64_t)size)) {
         camber_free(context, text);
-        return camber_budget_fail(context, JSON_BYTES_A_BYTE * (uint64_t)size);
+        return camber_budget_fail(context, CAMBER_GEOJSON_BYTES_A_BYTE * (uint64_t)size);
     }
     status = camber_json_load(context, text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, true, root, &error);
     camber_free(context, text);

@@ -4,6 +4,7 @@
  * Input: camber_view_desc in degrees and CSS pixels. Output: camber_view in world coordinates and device pixels. */
 #include "map/view.h"
 
+#include "base/maths.h"
 #include "base/perspective.h"
 #include "features/mercator.h"
 #include "style/style.h"
@@ -50,14 +51,13 @@ static camber_status check_size(camber_context *context, const camber_view_desc 
 
 static void set_zoom(camber_view *view, double zoom) {
     view->zoom = zoom;
-    view->scale_px = WORLD_CSS_PX * view->ratio * exp2(zoom);
+    view->scale_px = WORLD_CSS_PX * view->ratio * camber_exp2(zoom);
 }
 
 static void set_bearing(camber_view *view, double bearing_deg) {
     view->bearing_deg = bearing_deg;
     const double angle = fmod(bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
-    view->cosine = cos(angle);
-    view->sine = sin(angle);
+    camber_sine_cosine(angle, &view->sine, &view->cosine);
     if (remainder(bearing_deg, 90.0) == 0.0) {
         /* pi is not exact, but quarter turns must keep axis-parallel lines axis-parallel. */
         view->cosine = round(view->cosine);

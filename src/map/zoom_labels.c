@@ -12,6 +12,7 @@
  *     +----------------+ */
 #include "map/zoom_labels.h"
 
+#include "base/maths.h"
 #include "map/label_layout.h"
 
 #include <math.h>
@@ -52,7 +53,7 @@ camber_status camber_zoom_labels_create(const camber_zoom_labels_desc *desc, cam
     made->context = desc->features->context;
     made->desc = *desc;
     made->view =
-        (camber_view){.zoom = desc->zoom, .scale_px = WORLD_PX * exp2(desc->zoom), .cosine = 1.0, .ratio = 1.0};
+        (camber_view){.zoom = desc->zoom, .scale_px = WORLD_PX * camber_exp2(desc->zoom), .cosine = 1.0, .ratio = 1.0};
     *labels = made;
     return CAMBER_OK;
 }

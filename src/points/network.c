@@ -10,6 +10,8 @@
  *        points of too little importance are dropped. With arc lengths, add up how far along its line each point is */
 #include "points/network.h"
 
+#include "base/maths.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -144,7 +146,7 @@ static step_point step_of(const camber_network *n, const camber_network_desc *de
 }
 
 static double distance(step_point a, step_point b) {
-    return hypot((double)b.x - a.x, (double)b.y - a.y);
+    return camber_length((double)b.x - a.x, (double)b.y - a.y);
 }
 
 /* Stores a point, or drops it if it is on the same step as the previous one, which then gets the larger importance. An

@@ -14,6 +14,7 @@
  *          |     |                     |     |             \----- far_y -----/
  *          |     +---------------------+     |              \      .       /     .: where the camera looks
  *          +---------------------------------+               \-- near_y --/ */
+#include "base/maths.h"
 #include "base/perspective.h"
 #include "points/network.h"
 
@@ -119,7 +120,7 @@ static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspect
     const double seen_y = p->far_y - 1.5, near = half_y * camber_perspective_depth(p, half_y) / p->cosine;
     const bool is_below = p->cosine + p->fall * seen_y > 0.5 * p->cosine / p->farthest;
     const double far_depth = is_below ? camber_perspective_depth(p, seen_y) : 2.0 * p->farthest;
-    return (trapezoid){.side = half_x + (reach + 4.0) * hypot(1.0, slope),
+    return (trapezoid){.side = half_x + (reach + 4.0) * camber_length(1.0, slope),
                        .slope = slope,
                        .far_y = (1.0 - far_depth) / p->fall - reach - 4.0,
                        .near_y = near + reach + 4.0};
@@ -170,7 +171,10 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
     /* exact, so that axis-parallel lines stay axis-parallel */
     const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0;
-    const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);
+    double sine, cosine;
+    camber_sine_cosine(angle, &sine, &cosine);
+    if (quarters)
+        sine = round(sine), cosine = round(cosine);
     const double step = network->step, scale = step * camera->scale_px;
     const double origin_x = origin_of(camera->x - network->x0, step),
                  origin_y = origin_of(camera->y - network->y0, step);

@@ -73,6 +73,11 @@ void camber_raster_drop(camber_raster *raster, int which) {
     count_buffers(raster);
 }
 
+void camber_raster_trim(camber_raster *raster) {
+    for (int i = 0; i < BUFFERS; i++)
+        camber_raster_drop(raster, i);
+}
+
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes) {
     const camber_device *device = raster->device;
     if (size_bytes <= raster->capacities[which])

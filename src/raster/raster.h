@@ -78,6 +78,8 @@ typedef struct camber_raster camber_raster;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster);
 void camber_raster_destroy(camber_raster *raster);
+/* Releases the buffers that are kept for the next area. */
+void camber_raster_trim(camber_raster *raster);
 /* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);

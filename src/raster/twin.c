@@ -193,13 +193,20 @@ static void each_tile_of_bunch(const camber_twin *t, uint32_t bunch, size_t from
         each_row(t, i, counts, fill);
 }
 
+/* Returns the bunch that sixteen segments are, of which `from` is the number of the first. */
+static uint32_t bunch_at(const camber_twin *t, size_t from) {
+    uint32_t brushes[16];
+    if (from < t->first_edge || from >= t->end_edge)
+        return CAMBER_NO_BUNCH;
+    for (size_t k = 0; k < 16; k++)
+        brushes[k] = camber_bits_of(t->stages->edges[camber_edge_brush(from + k)]);
+    return camber_bunch_of(t->stages->boxes + from, brushes);
+}
+
 /* Does the same for all segments, in their order. */
 static void each_segment(const camber_twin *t, uint32_t *counts, bool fill) {
     for (size_t i = 0; i < t->stages->segment_count; i += 16) {
-        const bool may_be = i >= t->first_edge && i < t->end_edge;
-        const uint32_t *boxes = t->stages->boxes + i;
-        const uint32_t bunch =
-            may_be ? camber_bunch_of(boxes, t->stages->edges + camber_edge_brush(i)) : CAMBER_NO_BUNCH;
+        const uint32_t bunch = bunch_at(t, i);
         if (bunch != CAMBER_NO_BUNCH)
             each_tile_of_bunch(t, bunch, i, counts, fill);
         for (size_t k = i; k < i + 16 && bunch == CAMBER_NO_BUNCH; k++)

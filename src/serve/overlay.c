@@ -124,13 +124,26 @@ static bool read_pair(piece p, double most_first, double most_second, double pai
            read_number(second, -most_second, most_second, pair + 1);
 }
 
+/* The first number is the latitude if the request says so. Metres become degrees. */
 static bool read_position(const maker *m, piece p, double position[2]) {
     double pair[2];
-    if (!read_pair(p, m->is_latlng ? 90.0 : FARTHEST_DEG, m->is_latlng ? FARTHEST_DEG : 90.0, pair))
+    const bool is_raw = m->request->is_raw;
+    const double most[] = {is_raw ? 3.0 * CAMBER_ROUTE_MOST_METRES : FARTHEST_DEG,
+                           is_raw ? CAMBER_ROUTE_MOST_METRES : 90.0};
+    if (!read_pair(p, most[m->is_latlng], most[!m->is_latlng], pair))
         return false;
-    position[0] = pair[m->is_latlng];
-    position[1] = pair[!m->is_latlng];
+    for (int axis = 0; axis < 2; axis++) {
+        position[axis] = pair[axis ^ m->is_latlng];
+        if (is_raw)
+            position[axis] = camber_route_find_degrees(axis, position[axis]);
+    }
     return true;
+}
+
+static const char *name_position(const maker *m) {
+    if (m->request->is_raw)
+        return m->is_latlng ? "Y,X in metres of Web Mercator" : "X,Y in metres of Web Mercator";
+    return m->is_latlng ? "LAT,LON in degrees" : "LON,LAT in degrees";
 }
 
 /* Parses a style whose background has this colour, as the map's own colours are parsed. */
@@ -282,7 +295,7 @@ static bool read_path_parts(maker *m, const char *value, path_look *look, json_t
         double position[2];
         i++;
         if (!read_position(m, p, position))
-            return refuse(m, "point %zu is not %s in degrees", i, m->is_latlng ? "LAT,LON" : "LON,LAT");
+            return refuse(m, "point %zu is not %s", i, name_position(m));
         if (!add_point(m, points, position))
             return false;
     }
@@ -402,7 +415,7 @@ static bool read_text(maker *m, const char *value) {
     double position[2];
     piece p, name, content;
     if (!next_piece(&rest, '|', &p) || !read_position(m, p, position))
-        return refuse(m, "it does not begin with %s in degrees", m->is_latlng ? "LAT,LON" : "LON,LAT");
+        return refuse(m, "it does not begin with %s", name_position(m));
     if (!next_piece(&rest, '|', &look.words) || !look.words.length)
         return refuse(m, "no words follow its position; give LON,LAT|WORDS");
     while (next_piece(&rest, '|', &p))
@@ -461,7 +474,7 @@ static bool read_marker(maker *m, const char *value) {
     double position[2];
     const char *rest = value;
     if (!next_piece(&rest, '|', &p) || !read_position(m, p, position))
-        return refuse(m, "it does not begin with %s in degrees", m->is_latlng ? "LAT,LON" : "LON,LAT");
+        return refuse(m, "it does not begin with %s", name_position(m));
     made.longitude = position[0];
     made.latitude = position[1];
     for (bool first = true; next_piece(&rest, '|', &p); first = false) {

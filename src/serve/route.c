@@ -8,7 +8,7 @@
 enum { MOST_DIGITS = 8, MOST_PITCH_DEG = 85, MOST_FRACTION_DIGITS = 15 };
 
 /* The limit of Web Mercator; the centre of a picture must be within it. */
-static const double MOST_LATITUDE = 85.051129;
+static const double MOST_LATITUDE = 85.051129, PI = 3.14159265358979323846;
 
 static const struct {
     const char *ending, *other, *media_type;
@@ -117,6 +117,12 @@ static bool take_ending(cursor *c, camber_route_request *r) {
     return strlen(name) == length && camber_route_find_type(name, &r->type);
 }
 
+double camber_route_find_degrees(int axis, double metres) {
+    const double angle = metres / CAMBER_ROUTE_MOST_METRES * PI;
+    const double degrees = (axis ? atan(sinh(angle)) : angle) * 180.0 / PI;
+    return axis ? fmax(-MOST_LATITUDE, fmin(MOST_LATITUDE, degrees)) : degrees;
+}
+
 /* ---- Routes ---- */
 
 static const char SUBTREES[] = "subtrees/";
@@ -145,19 +151,26 @@ static bool take_of_tileset(cursor *c, const camber_route_limits *limits, camber
     return take(c, SUBTREES) ? take_subtree(c, r) : take_tile(c, limits, r) && r->type == CAMBER_ROUTE_GLB;
 }
 
-static bool take_bounds(cursor *c, double bounds[4]) {
-    for (int i = 0; i < 4; i++) {
-        const double most = i % 2 ? MOST_LATITUDE : 180;
-        if ((i && !take(c, ",")) || !take_number(c, -most, most, bounds + i))
+/* Parses a longitude (axis 0) or a latitude: degrees, or metres of Web Mercator. */
+static bool take_coordinate(cursor *c, const camber_route_request *r, int axis, double *degrees) {
+    const double most = r->is_raw ? CAMBER_ROUTE_MOST_METRES : axis ? MOST_LATITUDE : 180;
+    if (!take_number(c, -most, most, degrees))
+        return false;
+    if (r->is_raw)
+        *degrees = camber_route_find_degrees(axis, *degrees);
+    return true;
+}
+
+static bool take_bounds(cursor *c, camber_route_request *r) {
+    for (int i = 0; i < 4; i++)
+        if ((i && !take(c, ",")) || !take_coordinate(c, r, i % 2, r->bounds + i))
             return false;
-    }
-    return bounds[1] <= bounds[3];
+    return r->bounds[1] <= r->bounds[3];
 }
 
 static bool take_center(cursor *c, camber_route_request *r) {
-    if (!take_number(c, -180, 180, &r->longitude) || !take(c, ",") ||
-        !take_number(c, -MOST_LATITUDE, MOST_LATITUDE, &r->latitude) || !take(c, ",") ||
-        !take_number(c, 0, CAMBER_ROUTE_MOST_ZOOM, &r->map_zoom))
+    if (!take_coordinate(c, r, 0, &r->longitude) || !take(c, ",") || !take_coordinate(c, r, 1, &r->latitude) ||
+        !take(c, ",") || !take_number(c, 0, CAMBER_ROUTE_MOST_ZOOM, &r->map_zoom))
         return false;
     return !take(c, "@") || (take_number(c, -360, 360, &r->bearing_deg) &&
                              (!take(c, ",") || take_number(c, 0, MOST_PITCH_DEG, &r->pitch_deg)));
@@ -177,13 +190,17 @@ static bool take_view(cursor *c, camber_route_request *r) {
         return true;
     }
     r->view = has_bounds(c) ? CAMBER_ROUTE_BOUNDS : CAMBER_ROUTE_CENTER;
-    return r->view == CAMBER_ROUTE_BOUNDS ? take_bounds(c, r->bounds) : take_center(c, r);
+    return r->view == CAMBER_ROUTE_BOUNDS ? take_bounds(c, r) : take_center(c, r);
 }
 
 /* Returns NULL, or why the path is not a picture's. */
 static const char *take_picture(cursor *c, camber_route_request *r) {
+    r->is_raw = take(c, "raw/");
     if (!take_view(c, r) || !take(c, "/"))
-        return r->view == CAMBER_ROUTE_BOUNDS
+        return r->is_raw
+                   ? "after raw/ the view is X,Y,ZOOM[@BEARING[,PITCH]], WEST,SOUTH,EAST,NORTH or auto, in metres of "
+                     "Web Mercator, within 20037508.342789"
+               : r->view == CAMBER_ROUTE_BOUNDS
                    ? "the bounds are WEST,SOUTH,EAST,NORTH in degrees, south first, within 180 and 85.051129"
                    : "the view is LON,LAT,ZOOM[@BEARING[,PITCH]], WEST,SOUTH,EAST,NORTH or auto; longitudes are within "
                      "180, latitudes within 85.051129, zooms 0 to 24, bearings within 360 and pitches 0 to 85";

@@ -38,6 +38,7 @@ typedef enum camber_route {
 } camber_route;
 
 enum { CAMBER_ROUTE_MOST_ZOOM = 24 };
+#define CAMBER_ROUTE_MOST_METRES 20037508.342789 /* half of Web Mercator's world */
 #define CAMBER_ROUTE_NO_MAP UINT32_MAX
 
 /* How a path says which part of the map its picture shows. */
@@ -82,6 +83,7 @@ typedef struct camber_route_request {
     uint32_t width, height;                                       /* CSS px */
     camber_route_view view;
     double bounds[4];              /* west, south, east, north in degrees */
+    bool is_raw;                   /* the path and the query have metres of Web Mercator; here they are degrees */
     const camber_overlay *overlay; /* drawn over a picture; not the parser's. NULL: none */
     const char *name;              /* a file of the page, as a part of the path; "" is the page itself */
     size_t name_length;
@@ -95,6 +97,8 @@ const char *camber_route_get_media_type(camber_route_type type);
 /* Returns the extension of a type of tiles, without a dot. */
 const char *camber_route_get_ending(camber_route_type type);
 /* Finds the type that has this name in archives. Returns false if no path exists for it. */
+/* Returns the longitude (axis 0) or the latitude, within Web Mercator, of metres of it. */
+double camber_route_find_degrees(int axis, double metres);
 bool camber_route_find_type(const char *name, camber_route_type *type);
 
 /* Parses a path exactly as it was received, before anything is unescaped. A '?' and what follows it are ignored. The

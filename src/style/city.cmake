@@ -107,7 +107,6 @@ set(city_openmaptiles_is_ramp [=[["==", ["get", "ramp"], 1]]=])
 set(city_openmaptiles_way [=[["case", ["==", ["get", "class"], "path"], ["coalesce", ["get", "subclass"], "path"], ["get", "class"]]]=])
 set(city_openmaptiles_levels 2)
 set(city_openmaptiles_minor minor)
-set(city_openmaptiles_path platform)
 set(city_protomaps_rivers water physical_line)
 set(city_protomaps_rails roads transit)
 set(city_protomaps_roads roads)
@@ -135,10 +134,10 @@ set(city_rails ${city_rails_heavy} ${city_rails_light} tram)
 
 # Other lines: their filters for OpenStreetMap's keys, and for layers of tiles.
 set(city_borders_tiles boundary boundaries)
-set(city_border_level_osm [=[["to-number", ["get", "admin_level"], 99]]=])
-set(city_border_level_boundary [=[["to-number", ["get", "admin_level"], 99]]=])
+set(city_border_level_osm [=[["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]=])
+set(city_border_level_boundary [=[["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]=])
 set(city_border_level_boundaries [=[["match", ["coalesce", ["get", "kind"], ["get", "pmap:kind"], ""], "country", 2, "region", 4,
-                ["to-number", ["get", "admin_level"], 99]]]=])
+                ["to-number", ["coalesce", ["get", "admin_level"], 99], 99]]]=])
 set(city_ferry_osm [=[["==", ["get", "route"], "ferry"]]=])
 set(city_ferry_tiles transportation roads ferries transit)
 set(city_ferry_transportation [=[["==", ["get", "class"], "ferry"]]=])
@@ -177,28 +176,29 @@ set(city_zoom_apron 10)
 set(city_zoom_plaza 14)
 
 set(city_light_reserve  "#edf0df")
-set(city_light_built    "#f1ebe0")
+set(city_light_built    "#efe9de")
+set(city_light_built_far "#e5dacb")
 set(city_light_commerce "#f3e7dd")
 set(city_light_industry "#ebe6de")
 set(city_light_campus   "#f3ead3")
 set(city_light_field    "#e9edd7")
-set(city_light_park     "#dae6c5")
-set(city_light_wood     "#c9dcb7")
+set(city_light_park     "#d5e6bf")
+set(city_light_wood     "#c1d9ad")
 set(city_light_sand     "#f4e7c6")
 set(city_light_rock     "#e4dfd6")
 set(city_light_wetland  "#d5e4d8")
 set(city_light_ice      "#eef5f7")
-set(city_light_pitch    "#cddfb8")
+set(city_light_pitch    "#c4e0b4")
 set(city_light_water    "#a6cfdd")
 set(city_light_pier     "#efe9dd")
 set(city_light_apron    "#e5e1d9")
 set(city_light_plaza    "#fbf8f1")
-set(city_light_building_far "#ede7dc")
-set(city_light_building "#e2d8c8")
-set(city_light_building_edge "#c9bca8")
+set(city_light_building_far "#e9e3d9")
+set(city_light_building "#e4dcd1")
+set(city_light_building_edge "#c6bbad")
 set(city_light_stream   "#9ac7d8")
-set(city_light_rail     "#9d948d")
-set(city_light_border   "#b39db3")
+set(city_light_rail     "#8b827c")
+set(city_light_border   "#a183a8")
 set(city_light_ferry    "#6d9db2")
 set(city_light_runway   "#dcd8d2")
 set(city_light_lift     "#8a8178")
@@ -207,6 +207,7 @@ set(city_light_works    "#c9a98a")
 
 set(city_dark_reserve  "#121c1e")
 set(city_dark_built    "#141924")
+set(city_dark_built_far "#1b2230")
 set(city_dark_commerce "#181a27")
 set(city_dark_industry "#171a22")
 set(city_dark_campus   "#1a1d24")
@@ -240,6 +241,11 @@ set(city_no_schema [=[["!", ["has", "pmap:kind"]]]=])
 # Appends a layer that fills areas of a kind, with an id, additional members (head) and a filter.
 function(city_layer out theme kind id head filter)
   set(paint "\"fill-color\": \"${city_${theme}_${kind}}\"")
+  if(DEFINED city_${theme}_${kind}_far)
+    # Towns stand out where they are small.
+    string(CONCAT paint "\"fill-color\": [\"interpolate\", [\"linear\"], [\"zoom\"], 11, "
+           "\"${city_${theme}_${kind}_far}\", 13, \"${city_${theme}_${kind}}\"]")
+  endif()
   if(DEFINED city_zoom_${kind})
     string(APPEND paint ", \"fill-opacity\": [\"step\", [\"zoom\"], 0, ${city_zoom_${kind}}, 1]")
   endif()
@@ -320,9 +326,9 @@ set(city_template_border [=[
      "layout": {"line-join": "round", "line-round-limit": 1},
      "paint": {"line-color": "@BORDER@", "line-dasharray": ["step", @LEVEL@, ["literal", [7, 2]], 3, ["literal", [4, 2, 1, 2]]],
                "line-width": ["interpolate", ["exponential", 1.2], ["zoom"],
-                              4, ["step", @LEVEL@, 0.7, 3, 0], 8, ["step", @LEVEL@, 1, 3, 0.6, 5, 0],
-                              11.9, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0], 12, ["step", @LEVEL@, 1.2, 3, 0.8, 5, 0.5],
-                              18, ["step", @LEVEL@, 2.6, 3, 2, 5, 1.3]]}}]=])
+                              4, ["step", @LEVEL@, 0.8, 3, 0], 8, ["step", @LEVEL@, 1.7, 3, 0.7, 5, 0],
+                              11.9, ["step", @LEVEL@, 2.2, 3, 1, 5, 0], 12, ["step", @LEVEL@, 2.2, 3, 1, 5, 0.5],
+                              18, ["step", @LEVEL@, 3, 3, 2, 5, 1.3]]}}]=])
 set(city_template_ferry [=[
     {"id": "@ID@", "type": "line",@HEAD@
      "filter": ["all", @NO_AREA@, @TEST@],

@@ -3,6 +3,7 @@
  * Input: shaped texts, and where each is drawn. Output: closed polylines. Main idea: each cluster of glyphs has a
  * frame, which moves and turns its outlines. All clusters of a text at a point share one frame; along a line each has
  * its own, whose origin is on the line at the middle of the cluster. */
+#include "base/maths.h"
 #include "text/clusters.h"
 #include "text/fonts.h"
 
@@ -120,7 +121,8 @@ static camber_status add_glyph(camber_text_rings *r, const camber_text_glyph *g,
 static camber_status add_at_point(camber_text_rings *r, const camber_text *text, const camber_text_position *position,
                                   camber_text_box *box) {
     const double turn = (double)position->turn_deg * (PI / 180.0);
-    const frame f = {(double)position->x, (double)position->y, cos(turn), sin(turn)};
+    frame f = {.x = (double)position->x, .y = (double)position->y};
+    camber_sine_cosine(turn, &f.s, &f.c);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < text->glyph_count && status == CAMBER_OK; i++)
         status = add_glyph(r, text->glyphs + i, position, &f, 0.0, box);
@@ -146,7 +148,7 @@ static bool measure(camber_text_rings *r, const camber_text_position *position) 
     r->lengths[0] = 0.0;
     for (size_t i = 1; i < position->point_count; i++) {
         const float *a = position->points + 2 * (i - 1), *b = a + 2;
-        r->lengths[i] = r->lengths[i - 1] + hypot((double)b[0] - (double)a[0], (double)b[1] - (double)a[1]);
+        r->lengths[i] = r->lengths[i - 1] + camber_length((double)b[0] - (double)a[0], (double)b[1] - (double)a[1]);
     }
     return r->lengths[position->point_count - 1] > 0.0;
 }

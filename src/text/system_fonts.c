@@ -45,8 +45,16 @@ const char *camber_font_pattern_name(const FcPattern *pattern) {
     return full ? full : get_string(pattern, FC_FAMILY, 0);
 }
 
+/* A system without fontconfig's configuration has no fonts for it to find, and it would complain on standard error. */
+static FcConfig *reference_config(void) {
+    FcChar8 *path = FcConfigFilename(NULL);
+    FcConfig *config = path ? FcConfigReference(NULL) : NULL;
+    FcStrFree(path);
+    return config;
+}
+
 camber_status camber_font_index_add_system(camber_font_index *index) {
-    index->config = FcConfigReference(NULL);
+    index->config = reference_config();
     FcFontSet *fonts = index->config ? FcConfigGetFonts(index->config, FcSetSystem) : NULL;
     for (int i = 0; fonts && i < fonts->nfont; i++) {
         const char *path = get_string(fonts->fonts[i], FC_FILE, 0);

@@ -27,9 +27,10 @@ static bool is_number(const float *point) {
 /* Finds the part of the window that a line may touch. Returns false if it touches none. */
 static bool reach_of(const open_line *p, camber_window window, camber_window *part) {
     double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
-    for (size_t i = 0; i < p->count; i++) {
-        left = fmin(left, (double)p->points[2 * i]), right = fmax(right, (double)p->points[2 * i]);
-        top = fmin(top, (double)p->points[2 * i + 1]), bottom = fmax(bottom, (double)p->points[2 * i + 1]);
+    for (size_t i = 0; i < p->count; i++) { /* no fmin or fmax: gcc 12 for aarch64 crashes */
+        const double x = (double)p->points[2 * i], y = (double)p->points[2 * i + 1];
+        left = x < left ? x : left, right = x > right ? x : right;
+        top = y < top ? y : top, bottom = y > bottom ? y : bottom;
     }
     /* Corners of square caps are sqrt(2) half widths away, and miter tips as far as their limit. */
     const double tip = p->style.join != CAMBER_JOIN_BEVEL ? fmax(p->style.miter_limit, 1.5) : 1.5;

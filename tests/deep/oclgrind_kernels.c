@@ -1,6 +1,5 @@
 /* Every kernel, method, join, cap, size of a work-group and border of a block on some hundred points, whole and in
- * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh; without
- * the simulator it is a quick test of whatever device there is. */
+ * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh. */
 #include "camber_proof.h"
 #include "residency/mesh.h"
 #include "validate/scenes.h"

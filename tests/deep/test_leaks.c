@@ -6,9 +6,9 @@
 
 #include "pictures.h"
 
+#include "gpu/opencl/cl.h"
 #include "residency/mesh.h"
 
-#include <CL/cl.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
@@ -172,24 +172,24 @@ static bool cycle_opencl(void) {
     const size_t count = 64;
     cl_platform_id platform;
     cl_device_id id;
-    cl_int code = clGetPlatformIDs(1, &platform, NULL);
-    if (code != CL_SUCCESS || clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, NULL) != CL_SUCCESS)
+    cl_int code = camber_cl_load() ? camber_cl.GetPlatformIDs(1, &platform, NULL) : CL_DEVICE_NOT_FOUND;
+    if (code != CL_SUCCESS || camber_cl.GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, NULL) != CL_SUCCESS)
         return false;
-    cl_context context = clCreateContext(NULL, 1, &id, NULL, NULL, &code);
+    cl_context context = camber_cl.CreateContext(NULL, 1, &id, NULL, NULL, &code);
     assert_int_equal(code, CL_SUCCESS);
-    cl_command_queue queue = clCreateCommandQueue(context, id, 0, &code);
-    cl_program program = clCreateProgramWithSource(context, 1, &source, NULL, &code);
-    assert_int_equal(clBuildProgram(program, 1, &id, "", NULL, NULL), CL_SUCCESS);
-    cl_kernel kernel = clCreateKernel(program, "fill", &code);
-    cl_mem mem = clCreateBuffer(context, CL_MEM_READ_WRITE, 4 * count, NULL, &code);
-    assert_int_equal(clSetKernelArg(kernel, 0, sizeof mem, &mem), CL_SUCCESS);
-    assert_int_equal(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &count, NULL, 0, NULL, NULL), CL_SUCCESS);
-    assert_int_equal(clFinish(queue), CL_SUCCESS);
-    clReleaseMemObject(mem);
-    clReleaseKernel(kernel);
-    clReleaseProgram(program);
-    clReleaseCommandQueue(queue);
-    return clReleaseContext(context) == CL_SUCCESS;
+    cl_command_queue queue = camber_cl.CreateCommandQueue(context, id, 0, &code);
+    cl_program program = camber_cl.CreateProgramWithSource(context, 1, &source, NULL, &code);
+    assert_int_equal(camber_cl.BuildProgram(program, 1, &id, "", NULL, NULL), CL_SUCCESS);
+    cl_kernel kernel = camber_cl.CreateKernel(program, "fill", &code);
+    cl_mem mem = camber_cl.CreateBuffer(context, CL_MEM_READ_WRITE, 4 * count, NULL, &code);
+    assert_int_equal(camber_cl.SetKernelArg(kernel, 0, sizeof mem, &mem), CL_SUCCESS);
+    assert_int_equal(camber_cl.EnqueueNDRangeKernel(queue, kernel, 1, NULL, &count, NULL, 0, NULL, NULL), CL_SUCCESS);
+    assert_int_equal(camber_cl.Finish(queue), CL_SUCCESS);
+    camber_cl.ReleaseMemObject(mem);
+    camber_cl.ReleaseKernel(kernel);
+    camber_cl.ReleaseProgram(program);
+    camber_cl.ReleaseCommandQueue(queue);
+    return camber_cl.ReleaseContext(context) == CL_SUCCESS;
 }
 
 /* ---- The pictures ---- */

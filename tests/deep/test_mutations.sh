@@ -383,8 +383,8 @@ mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= 
 mutant strip kernels/bins.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
 mutant strip kernels/bins.cl "boxes of two tiles without the second" 'count += b.has_last[k]' 'count += 0u * b.has_last[k]'
 mutant strip kernels/bins.cl "bunches of edges that cross no row's top" 'top | (from - l->base + k)' 'top | (from - l->base)'
-mutant strip kernels/setup.cl "bunches among edges that are none" 'makes_edges ? camber_bunch_of(boxes + sixteen' \
-    'makes_edges ? camber_bunch_of(boxes'
+mutant strip kernels/setup.cl "bunches of other edges" 'camber_bunch_of(boxes + sixteen' \
+    'camber_bunch_of(boxes'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[list] + to->own[list]++]' \
     'to->lists[to->starts[list + 1] - 1u - to->own[list]++]'

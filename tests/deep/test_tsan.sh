@@ -10,6 +10,7 @@ build() {
     if ! { cmake -S "$source" -B "$folder" -G Ninja -DCAMBER_TESTS=ON -DCAMBER_SANITIZE=THREAD -DCMAKE_BUILD_TYPE=Release "$@" &&
         { ! grep -q '^CAMBER_MAP:.*=ON$' "$folder/CMakeCache.txt" || targets+=(test_readers); } &&
         { ! grep -q '^MICROHTTPD_FOUND:.*=1$' "$folder/CMakeCache.txt" || targets+=(test_draw_queue test_tile_cache); } &&
+        { ! grep -q '^camber_cpu_kernels:' <(cmake --build "$folder" --target help) || targets+=(test_cpu); } &&
         cmake --build "$folder" --target "${targets[@]}"; } >"$folder/build.log" 2>&1; then
         tail -n 50 "$folder/build.log"
         exit 1
@@ -70,6 +71,10 @@ run() {
         "${fixed[@]}" "$folder/tests/$test" || status=$?
         [ "$status" = 0 ] || exit "$status"
     done
+    if [ -e "$folder/tests/test_cpu" ]; then # the processor's own device, which the tests above do without
+        (unset CAMBER_CPU && "${fixed[@]}" "$folder/tests/test_cpu") || exit $?
+        if [ -e "$folder/tests/test_readers" ]; then (unset CAMBER_CPU && run_tool); fi
+    fi
     if [ -e "$folder/tests/test_readers" ]; then run_tool; fi
 }
 

@@ -2,6 +2,8 @@
  * allowed, parts that are not there are made again, and what cannot fit is refused by name. */
 #include "pictures.h"
 
+#include "cl_calls.h"
+
 #include "gpu/opencl/opencl.h"
 #include "residency/memory.h"
 #include "residency/parts.h"
@@ -19,17 +21,12 @@ static struct {
     int refuse_in; /* buffers: the last of so many is refused. 0: none is */
 } watch;
 
-cl_mem __real_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
-cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
-cl_int __real_clReleaseMemObject(cl_mem mem);
-cl_int __wrap_clReleaseMemObject(cl_mem mem);
-
-cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {
+static cl_mem watch_buffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {
     if (context == watch.context && watch.refuse_in && --watch.refuse_in == 0) {
         *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
         return NULL;
     }
-    const cl_mem mem = __real_clCreateBuffer(context, flags, size, memory, code);
+    const cl_mem mem = cl_real.CreateBuffer(context, flags, size, memory, code);
     /* Zero copy puts an output buffer on GL's memory, which is the mesh's; a network's memory is its own. */
     if (context != watch.context || !mem || flags == (CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR))
         return mem;
@@ -41,14 +38,19 @@ cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size
     return mem;
 }
 
-cl_int __wrap_clReleaseMemObject(cl_mem mem) {
+static cl_int watch_release(cl_mem mem) {
     for (size_t i = 0; i < watch.count; i++)
         if (watch.mems[i] == mem) {
             watch.held_bytes -= watch.bytes[i];
             watch.mems[i] = watch.mems[--watch.count];
             watch.bytes[i] = watch.bytes[watch.count];
         }
-    return __real_clReleaseMemObject(mem);
+    return cl_real.ReleaseMemObject(mem);
+}
+
+static void cl_take(void) {
+    camber_cl.CreateBuffer = watch_buffer;
+    camber_cl.ReleaseMemObject = watch_release;
 }
 
 /* ---- Devices with a bound ---- */

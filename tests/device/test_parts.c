@@ -2,6 +2,8 @@
  * buffer is larger than allowed; what fits no part is refused by name. */
 #include "pictures.h"
 
+#include "cl_calls.h"
+
 #include "draw/renderer.h"
 #include "gpu/opencl/opencl.h"
 #include "vertices/vertices.h"
@@ -9,27 +11,24 @@
 /* ---- Watching OpenCL ---- */
 
 static cl_context watched;
+static cl_command_queue watched_queue;
 static size_t largest_buffer, writes; /* of the watched one */
 
-cl_mem __real_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
-cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
-cl_int __real_clEnqueueWriteBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
-                                   const void *bytes, cl_uint wait_count, const cl_event *waits, cl_event *event);
-cl_int __wrap_clEnqueueWriteBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
-                                   const void *bytes, cl_uint wait_count, const cl_event *waits, cl_event *event);
-
-cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {
+static cl_mem watch_buffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {
     if (context == watched && size > largest_buffer)
         largest_buffer = size;
-    return __real_clCreateBuffer(context, flags, size, memory, code);
+    return cl_real.CreateBuffer(context, flags, size, memory, code);
 }
 
-cl_int __wrap_clEnqueueWriteBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
-                                   const void *bytes, cl_uint wait_count, const cl_event *waits, cl_event *event) {
-    cl_context context = NULL;
-    clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, NULL);
-    writes += context == watched;
-    return __real_clEnqueueWriteBuffer(queue, mem, blocking, offset, size, bytes, wait_count, waits, event);
+static cl_int watch_write(cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
+                          const void *bytes, cl_uint wait_count, const cl_event *waits, cl_event *event) {
+    writes += queue == watched_queue;
+    return cl_real.EnqueueWriteBuffer(queue, mem, blocking, offset, size, bytes, wait_count, waits, event);
+}
+
+static void cl_take(void) {
+    camber_cl.CreateBuffer = watch_buffer;
+    camber_cl.EnqueueWriteBuffer = watch_write;
 }
 
 /* ---- Meshes and what is known of them ---- */
@@ -38,6 +37,7 @@ static void bounded_open(fixture *b, uint64_t largest_buffer_bytes, uint32_t wor
     const camber_device_desc desc = {.work_group_size = work_group_size, .largest_buffer_bytes = largest_buffer_bytes};
     fixture_open_mesh(b, &desc);
     watched = opencl_of(b->on.device)->cl;
+    watched_queue = opencl_of(b->on.device)->queue;
     largest_buffer = 0;
 }
 

@@ -90,8 +90,8 @@ static uint8_t *compare_stages(subject a, const subject *compared, const camber_
 }
 
 /* A scene of the stages alone: one table, a brush a row, with layers and a group among them, and a fill. The rich
- * variant makes the same of what is plain. By each method the picture is tilted by every other pitch: under a pitch the
- * twin is slow. */
+ * variant makes the same of what is plain. The picture is tilted by every other pitch: under a pitch the twin is slow.
+ */
 static void compare_scene(const drawing *d, subject a, const subject *compared, int which, int method) {
     const bool linear = which % 2;
     const camber_raster_area area = {32 * (uint32_t)method, 64, 500, 333};
@@ -133,7 +133,7 @@ static void compare_scene(const drawing *d, subject a, const subject *compared, 
     assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
     camber_free(a.on->context, rich);
     camber_free(a.on->context, plain);
-    for (size_t i = (size_t)method % 2; i < sizeof PITCHES / sizeof *PITCHES; i += 2) {
+    for (size_t i = (size_t)(which + method) % 2; i < sizeof PITCHES / sizeof *PITCHES; i += 2) {
         raster_tilt(&drawn, PITCHES[i], SIDE_PX, SIDE_PX);
         camber_free(a.on->context, compare_stages(a, compared, &drawn, area));
     }
@@ -170,10 +170,12 @@ static const camber_method METHODS[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE,
 
 static void test_twin(void **state) {
     const fixture *e = *state;
+    if (raster_is_second())
+        skip(); /* test_lanes has compared each width */
     for (int which = 0; which < SCENES; which++)
         for (int m = 0; m < 3; m++) {
-            if (IS_SANITIZED && m != which % 3)
-                continue; /* the twin is slow there, and all its code runs by one method a scene */
+            if (!raster_is_of_method(which, m))
+                continue;
             drawing d = begin_drawing();
             fill_scene(&d.lines, which);
             d.has_arc_length = (which + m) % 2;
@@ -218,7 +220,7 @@ static void compare_with_gl(const fixture *e, drawing *d, size_t pass_count, con
 static void test_gl(void **state) {
     const fixture *e = *state;
     static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
-    if (IS_SANITIZED || !fixture_gl(e))
+    if (IS_SANITIZED || raster_is_second() || !fixture_gl(e))
         skip();
     for (int which = 0; which < SCENES; which++) {
         drawing d = begin_drawing();
@@ -243,7 +245,7 @@ static void test_gl(void **state) {
 static void test_gl_tilted(void **state) {
     const fixture *e = *state;
     static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
-    if (IS_SANITIZED || !fixture_gl(e))
+    if (IS_SANITIZED || raster_is_second() || !fixture_gl(e))
         skip();
     for (int which = 0; which < SCENES; which++)
         for (size_t i = (size_t)which % 2; i < sizeof PITCHES / sizeof *PITCHES; i += 2) {
@@ -425,8 +427,8 @@ static void test_spills(void **state) {
     camber_made_scene_free(&d.lines);
 }
 
-/* Vectors of every width, whatever the device has: the bytes of the device's own width, which test_twin compares with
- * the twin's, and the same picture, in slices too. */
+/* Vectors of every width, in OpenCL: the bytes of the device's own width, which test_twin compares with the twin's, and
+ * the same picture, in slices too. */
 static void compare_lanes(const fixture *e, uint32_t lanes) {
     fixture other = {.context = e->context};
     const camber_device_desc desc = {.lanes = lanes}, small = {.lanes = lanes, .largest_buffer_bytes = 200 * 1024};
@@ -465,15 +467,17 @@ static void compare_lanes(const fixture *e, uint32_t lanes) {
     camber_device_destroy(other.on.device);
 }
 
-/* The lanes that the device itself has are those of all other tests. */
+/* The lanes that a device of OpenCL itself has are those of all other tests. */
 static void test_lanes(void **state) {
     const fixture *e = *state;
-    if (IS_SANITIZED)
+    static const uint32_t lanes[] = {16, 8, 1};
+    if (IS_SANITIZED || raster_is_second())
         skip(); /* the twin has one lane */
     if (camber_device_get_info(e->on.device).type != CAMBER_DEVICE_TYPE_CPU)
         skip(); /* a GPU has one lane, and its compiler takes minutes over vectors */
-    compare_lanes(e, e->on.device->lanes == 16 ? 8 : 16);
-    compare_lanes(e, 1);
+    for (size_t i = 0; i < sizeof lanes / sizeof *lanes; i++)
+        if (lanes[i] != e->on.device->lanes || camber_device_get_info(e->on.device).fixed_kernels)
+            compare_lanes(e, lanes[i]);
 }
 
 /* Kernels as they are built for a GPU draw the same picture. */

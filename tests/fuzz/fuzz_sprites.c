@@ -24,6 +24,12 @@ static void write_file(const char *base, const char *tail, const void *bytes, si
     REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
 }
 
+static void remove_file(const char *base, const char *tail) {
+    char path[96];
+    snprintf(path, sizeof path, "%s%s", base, tail);
+    remove(path);
+}
+
 static void check(fuzz_run *run, camber_sprites *sprites) {
     for (size_t i = 0; i < sprites->image_count; i++) {
         const camber_sprite_image *image = sprites->images + i;
@@ -50,6 +56,8 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         check(run, sprites);
     camber_sprites_destroy(sprites);
     camber_style_destroy(style);
+    remove_file(base, ".png");
+    remove_file(base, ".json");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {

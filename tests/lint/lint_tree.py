@@ -292,8 +292,12 @@ def check_includes(tree):
 
 
 def check_compute(tree):
-    """OpenCL's names stay in gpu/, so that another back end is a folder of it."""
+    """OpenCL's names stay in gpu/, so that another back end is a folder of it. Drivers' headers are not included."""
     for file in tree.ending(".c", ".h"):
+        match = re.search(r"^#include <((?:CL|EGL|GL|GLES\d)/.*)>", file.text, re.M)
+        if match and file.path.startswith("src/"):
+            yield Finding(file.path, file.line_at(match.start()), "%s: a build needs nothing of drivers" % match.group(1),
+                          "declare what it has in gpu/opencl/cl.h, gl/gl.h or gl/egl.h")
         if not file.path.startswith("src/") or file.layer == "gpu":
             continue
         match = re.search(r"\b(?:cl_(?!khr_)[a-z]\w*|cl[A-Z]\w*|CL_[A-Z]\w*)\b", file.code)
@@ -604,11 +608,10 @@ def list_hints(tree):
 
 # ---- Packages ----
 
-# Each thing that CMake looks for, or whose headers the sources include -> the package that has it: Debian's, RPM's,
-# Homebrew's. None: it needs none of its own.
+# Each thing that CMake looks for -> the package that has it: Debian's, RPM's, Homebrew's. None: it needs none of its own.
 LIBRARIES = {
     "PNG": ("libpng-dev", "pkgconfig(libpng)", "libpng"), "ZLIB": ("zlib1g-dev", "pkgconfig(zlib)", "zlib"),
-    "OpenCL": ("ocl-icd-opencl-dev", "pkgconfig(OpenCL)", "opencl-icd-loader"), "Threads": None, "PkgConfig": None,
+    "Threads": None, "PkgConfig": None,
     "jansson": ("libjansson-dev", "pkgconfig(jansson)", "jansson"), "GDAL": ("libgdal-dev", "pkgconfig(gdal)", "gdal"),
     "SQLite3": ("libsqlite3-dev", "pkgconfig(sqlite3)", "sqlite"), "cmocka": None,
     "libprotobuf-c": ("libprotobuf-c-dev", "pkgconfig(libprotobuf-c)", "protobuf-c"),
@@ -616,7 +619,6 @@ LIBRARIES = {
     "harfbuzz": ("libharfbuzz-dev", "pkgconfig(harfbuzz)", "harfbuzz"),
     "fribidi": ("libfribidi-dev", "pkgconfig(fribidi)", "fribidi"),
     "fontconfig": ("libfontconfig-dev", "pkgconfig(fontconfig)", "fontconfig"),
-    "EGL": ("libegl-dev", "pkgconfig(egl)", "mesa"), "GLES3": ("libgles-dev", "pkgconfig(glesv2)", "mesa"),
     "libdeflate": ("libdeflate-dev", "pkgconfig(libdeflate)", "libdeflate"),
     "libisal": ("libisal-dev", "pkgconfig(libisal)", "isa-l"),
     "liblz4": ("liblz4-dev", "pkgconfig(liblz4)", "lz4"), "libzstd": ("libzstd-dev", "pkgconfig(libzstd)", "zstd"),
@@ -631,11 +633,12 @@ LIBRARIES = {
 PACKAGINGS = (
     ("packaging/debian/control", None, 0), ("packaging/camber.spec", r"^Version: *(\S+)", 1),
     ("packaging/camber.rb", r"camber-([\d.]+)\.tar", 2), ("examples/serve/Dockerfile", None, 0),
+    ("packaging/recipe.yaml", r'^  version: "([\d.]+)"', None),
     ("packaging/debian/changelog", r"\Acamber \(([\d.]+)-", None),
     ("pyproject.toml", r'^version = "(.*)"', None), ("src/camber.3", r'^\.TH .* "camber (\S+)"', None),
     ("packaging/camber.spec", r"^\* .* - (\S+)-1$", None), ("src/cli/camber.1", r'^\.TH .* "camber (\S+)"', None))
 # Each package is made with the same options, and with all that can be left out.
-CONFIGURED = ("packaging/debian/rules", "packaging/camber.spec", "packaging/camber.rb")
+CONFIGURED = ("packaging/debian/rules", "packaging/camber.spec", "packaging/camber.rb", "packaging/recipe.yaml")
 
 
 def check_options(tree, cmake):
@@ -664,9 +667,6 @@ def check_packages(tree):
     used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
     used |= set(re.findall(r"^ *camber_optional_library\(\w+ CAMBER_\w+ (\S+)", cmake, re.M))
     used |= set(re.findall(r"\bfind_program\(\w+ ([\w-]+) REQUIRED", cmake))
-    for file in tree.files:
-        if file.path.startswith("src/"):
-            used |= set(re.findall(r"^#include <(EGL|GLES3)/", file.text, re.M))
     yield from check_options(tree, cmake)
     for name in sorted(used - set(LIBRARIES)):
         yield Finding("CMakeLists.txt", 1, "%s is new to the packages" % name,

@@ -265,6 +265,30 @@ static void test_sizes(void **state) {
     }
 }
 
+/* A renderer that has given its memory back draws the same again, and trimming what keeps nothing does nothing. */
+static void test_trim(void **state) {
+    fixture *s = *state;
+    camber_made_scene lines = road_scene();
+    for (int b = 0; b < CAMBER_FIXTURE_DRAWERS; b++) {
+        camber_renderer *renderer = s->on.renderer[b];
+        if (!renderer)
+            continue;
+        camber_renderer_trim(renderer);
+        const uint64_t before = camber_device_get_memory(s->on.device).held_bytes;
+        picture first = draw_scene(s, renderer, &lines, CAMBER_METHOD_STRIP, &SQUARE);
+        const uint64_t kept = camber_device_get_memory(s->on.device).held_bytes;
+        camber_renderer_trim(renderer);
+        assert_int_equal(camber_device_get_memory(s->on.device).held_bytes, before);
+        if (b == CAMBER_FIXTURE_OPENCL)
+            assert_true(kept > before);
+        picture again = draw_scene(s, renderer, &lines, CAMBER_METHOD_STRIP, &SQUARE);
+        assert_int_equal(picture_compare(&first, &again).most, 0);
+        picture_free(&again);
+        picture_free(&first);
+    }
+    camber_made_scene_free(&lines);
+}
+
 /* The picture is the same in the caller's memory, whoever writes it there, and the bytes around it stay. */
 static void test_into(void **state) {
     fixture *s = *state;
@@ -400,6 +424,7 @@ int main(void) {
         cmocka_unit_test(test_pieces),
         cmocka_unit_test(test_surfaces_in_turn),
         cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_trim),
         cmocka_unit_test(test_into),
         cmocka_unit_test(test_into_place),
         cmocka_unit_test(test_rows_refused),

@@ -56,6 +56,7 @@ static const thing things[] = {
     {"town", "boundary", "admin_level=8"},
     {"quarter", "boundary", "admin_level=10"},
     {"sea", "boundary", "admin_level=2 maritime=1"},
+    {"unlevelled", "boundary", "disputed=0"},
     {"runway", "aeroway", "class=runway"},
     {"taxiway", "aeroway", "class=taxiway"},
     {"apron", "aeroway", "class=apron"},

@@ -7,11 +7,14 @@
 #       packages                 the packages that ./dev package makes: installed, the documents' first examples run, all
 #                                removed. They are made here for this Debian, which is taken if none is named, and in
 #                                a fresh system for another
+#       wheel                    Python's wheel, made in Debian 11 into the build folder, as its archive of sources is; in each
+#                                system (bullseye, bookworm, trixie and noble) a user without a compiler installs it and
+#                                draws with it what the build folder's tool draws, byte for byte
 #
 # A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
 # whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and the system's mirror; ends with
 # 77 if one is not to be had. CAMBER_CHROOTS (/var/cache/camber-chroots) keeps fresh systems, their packages and what
-# PoCL compiles in them for the next time; objects are ccache's, in the cache of this system.
+# PoCL compiles in them for the next time, and libraries for the wheel; objects are ccache's, in the cache of this system.
 # All mounts are in a namespace of their own: they go with it, however this ends.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -40,10 +43,11 @@ mount_root() {
     mount -t sysfs none "$root/sys"
     mount --rbind /dev "$root/dev" # with its terminals
     mount --bind "$kept/$1.debs" "$root/var/cache/apt/archives"
-    mkdir -p "$root/kept/objects" "$root/kept/pocl" "$kept/$1.pocl" "$objects"
+    mkdir -p "$root/kept/objects" "$root/kept/pocl" "$root/kept/wheel" "$kept/$1.pocl" "$kept/wheel" "$objects"
     chmod 777 "$kept/$1.pocl"
     mount --bind "$objects" "$root/kept/objects"
     mount --bind "$kept/$1.pocl" "$root/kept/pocl"
+    mount --bind "$kept/wheel" "$root/kept/wheel"
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
     cp -L /etc/ssl/certs/ca-certificates.crt "$root/kept/certificates" # npm's registry is trusted as it is here
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh" # nothing of it outlives this run
@@ -159,13 +163,13 @@ CLONE
         echo 'cmake --install build && ldconfig && camber --version'
         ;;
     packages)
-        echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb pocl-opencl-icd gcc libc6-dev pkg-config curl'
-        echo 'ls /usr/lib/*/camber-kernels/*.bin >/root/here/kernels && test ! -e /root/.cache'
+        echo 'apt-get install -y --no-install-recommends /checkout/debs/*.deb gcc libc6-dev pkg-config curl'
+        echo '! ls /usr/lib/*/lib*OpenCL* /usr/lib/*/camber-kernels/*.bin && test ! -e /root/.cache' # nothing is compiled
         # The system as it is now: each file of camber's packages, and a moment that is later than all other files.
         echo "dpkg -L \$(dpkg-query -W -f '\${Package}\\n' '*camber*') | sort -u >/files && grep -q /camber /files"
         echo 'while read -r file; do [ -d "$file" ] || echo "$file"; done </files >/owned && sleep 1 && touch /moment'
         # The tool, C, Python, the server. What they keep for their user goes with the folder.
-        echo 'export POCL_CACHE_DIR=/root/here/pocl XDG_CACHE_HOME=/root/here/cache'
+        echo 'export XDG_CACHE_HOME=/root/here/cache'
         block build | grep '^camber ' | sed 's|tests/data|/checkout/tests/data|'
         echo 'od -An -c -N4 city.png | grep -q "P   N   G"'
         echo 'gcc /checkout/examples/hello.c -o hello $(pkg-config --cflags --libs camber) -lm && ./hello'
@@ -188,6 +192,17 @@ CLONE
         echo 'find / -xdev \( -path /checkout -o -path /proc -o -path /sys -o -path /dev -o -path /var/cache/apt \) -prune -o -name "*camber*" -print >>/left'
         echo 'find / -xdev \( -path /checkout -o -path /proc -o -path /sys -o -path /dev -o -path /var/cache -o -path /var/lib/dpkg -o -path /var/lib/apt -o -path /var/log -o -path /etc/ld.so.cache -o -path /left -o -path /moment \) -prune -o -type f -newer /moment -print >>/left'
         echo 'cat /left && test ! -s /left && test -z "$(ls /tmp)"'
+        ;;
+    wheel)
+        echo 'apt-get install -y -qq --no-install-recommends python3-venv python3-numpy python3-cffi ocl-icd-libopencl1'
+        echo '! command -v gcc cc clang c++'
+        echo 'useradd -m traveller && cp /checkout/tests/recipes/wheel.sh /home/traveller && chmod -R a+rX /checkout'
+        echo 'su - traveller -c "bash wheel.sh use /checkout"'
+        if [ "$2" = bookworm ]; then
+            echo 'apt-get install -y -qq --no-install-recommends libgdal32 && su - traveller -c "bash wheel.sh gdal"'
+        fi
+        # The build folder's tool drew the same; without one there is nothing to compare with.
+        echo '[ ! -d /checkout/expected ] || for picture in /checkout/expected/*.png; do cmp "$picture" "/home/traveller/drawn/${picture##*/}"; done'
         ;;
     *) echo "no recipe $1" >&2; exit 2 ;;
     esac
@@ -215,6 +230,21 @@ build_packages() { # DEBIAN
     cp "$package"/*.deb "$run/checkout/debs"
 }
 
+# Makes the wheel and the archive of sources into the build folder and the checkout, and what the wheel must draw.
+build_wheel() {
+    local made=${CAMBER_BUILD:-$source/build}/wheel tool=${CAMBER_BUILD:-$source/build}/src/camber
+    echo 'cp -a /checkout tree && bash tree/packaging/wheel.sh "$PWD/tree" /checkout/dist /kept/wheel' >"$run/make"
+    inside in_root bullseye "$run/bullseye.make" "$run/make" >"$run/log" 2>&1 || { tail -n 40 "$run/log"; return 1; }
+    rm -rf --one-file-system "$run/bullseye.make" "$made"
+    cp -r "$run/checkout/dist" "$made"
+    ls -l "$made"
+    if [ -x "$tool" ]; then
+        bash "$source/tests/recipes/wheel.sh" draw "$tool" "$source" "$run/checkout/expected" >"$run/log" 2>&1 || { tail -n 40 "$run/log"; return 1; }
+    else
+        echo "no $tool: the wheel's pictures are compared with nothing"
+    fi
+}
+
 [ "$(id -u)" = 0 ] || skip "the documents' recipes: not root"
 command -v debootstrap >/dev/null || skip "the documents' recipes: no debootstrap (Debian: debootstrap)"
 command -v git >/dev/null || skip "the documents' recipes: no git"
@@ -239,17 +269,30 @@ if [ "$recipe" = packages ]; then
     [ $# -gt 0 ] || set -- ${here:+"$here"}
     [ $# -gt 0 ] || skip "the packages: this is no Debian, and none is named"
 fi
+[ $# -gt 0 ] || [ "$recipe" != wheel ] || set -- bullseye bookworm trixie noble
 [ $# -gt 0 ] || set -- bookworm trixie
-failures=0
-for system; do
-    if [ ! -x "$kept/$system/usr/bin/ccache" ]; then
+
+prepare() { # SYSTEM
+    if [ ! -x "$kept/$1/usr/bin/ccache" ]; then
         begun=$SECONDS
-        inside make_base "$system" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: debootstrap of $system failed"; }
-        echo "$system: a fresh system, $((SECONDS - begun)) s"
+        inside make_base "$1" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: debootstrap of $1 failed"; }
+        echo "$1: a fresh system, $((SECONDS - begun)) s"
     fi
-    echo 'apt-get -qq update -o APT::Update::Error-Mode=any' >"$run/update"
-    inside in_root "$system" "$run/$system.update" "$run/update" >"$run/log" 2>&1 ||
-        { tail -n 3 "$run/log"; skip "the documents' recipes: no $(mirror_of "$system")"; }
+    echo 'apt-get -qq update' >"$run/update"
+    [ "$1" = bullseye ] || echo 'apt-get -qq update -o APT::Update::Error-Mode=any' >"$run/update" # which its apt does not know
+    inside in_root "$1" "$run/$1.update" "$run/update" >"$run/log" 2>&1 ||
+        { tail -n 3 "$run/log"; skip "the documents' recipes: no $(mirror_of "$1")"; }
+}
+
+failures=0
+if [ "$recipe" = wheel ]; then
+    prepare bullseye
+    begun=$SECONDS
+    build_wheel || { echo "FAILED: the wheel does not build, after $((SECONDS - begun)) s"; exit 1; }
+    echo "bullseye: the wheel is made, $((SECONDS - begun)) s"
+fi
+for system; do
+    prepare "$system"
     begun=$SECONDS
     if [ "$recipe" = packages ] && ! build_packages "$system"; then
         echo "FAILED: $system: the packages do not build"
@@ -257,7 +300,7 @@ for system; do
         continue
     fi
     { [ "$recipe" = newcomer ] || without_sudo && script_of "$recipe" "$system"; } >"$run/$recipe"
-    if { [[ $recipe = @(packages|newcomer) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
+    if { [[ $recipe = @(packages|newcomer|wheel) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
         inside in_root "$system" "$run/$system.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
         grep -E '^[0-9]+% tests passed|^skipped, and why|^  test_.*: ' "$run/log" || true
         echo "$system: $recipe: works, $((SECONDS - begun)) s"

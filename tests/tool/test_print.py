@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Sheets of paper: PDF and SVG as other programs read them, and PNG. test_print.py CAMBER MONACO
 
-poppler (pdftocairo, pdftotext, pdffonts, pdfinfo) and librsvg (rsvg-convert) judge the files; where one of them is
-missing, its checks are left out, and a line says so.
+poppler (pdftocairo, pdftotext, pdffonts, pdfinfo), librsvg (rsvg-convert) and Chromium judge the files; where one of
+them is missing, its checks are left out, and a line says so.
 """
 
 import json
@@ -42,7 +42,7 @@ def render(name, *options):
 def have(program):
     found = shutil.which(program)
     if not found:
-        print(f"left out: no {program} (Debian: {'librsvg2-bin' if 'rsvg' in program else 'poppler-utils'})")
+        print(f"left out: no {program} (Debian: {dict.get({'rsvg-convert': 'librsvg2-bin', 'chromium': 'chromium'}, program, 'poppler-utils')})")
     return found
 
 
@@ -165,6 +165,14 @@ if have("rsvg-convert"):
     subprocess.run(["rsvg-convert", "-d", str(DPI), "-p", str(DPI), "-o", drawn, svg], check=True)
     mean, far = difference(png, drawn)
     expect(mean < 0.6 and far < 0.002, f"an SVG with labels differs by {mean:.3f} levels, and far in {far:.5f}")
+if have("chromium"):
+    drawn, sides = os.path.join(FOLDER, "chromium.png"), [f"{round(mm / MM * 96)}" for mm in (105, 148)]
+    subprocess.run(["chromium", "--headless", "--no-sandbox", "--hide-scrollbars", f"--user-data-dir={FOLDER}/profile",
+                    f"--force-device-scale-factor={DPI / 96}", f"--window-size={','.join(sides)}",
+                    "--force-color-profile=srgb", f"--screenshot={drawn}", f"file://{svg}"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    mean, far = difference(png, drawn)
+    expect(mean < 0.9 and far < 0.002, f"Chromium's SVG differs by {mean:.3f} levels, and far in {far:.5f}")
 
 # ---- Dashes, gaps, offsets; a blur, which a page cannot say ----
 

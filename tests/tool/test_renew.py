@@ -298,7 +298,7 @@ def test_killed():
 
 def test_full_disk():
     job = Job()
-    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", "maps"], capture_output=True,
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", "maps"], capture_output=True,
                                            check=False).returncode != 0:
         print("test_full_disk: no file system of its own: skipped")
         return

@@ -187,6 +187,12 @@ def test_overlays():
     near, far = (server.get("/static/auto/100x100.png" + overlay(("marker", "9.14,50.1"), *more))[2]
                  for more in ((), (("maxzoom", "3"),)))
     expect(near != far, "maxzoom")
+    metres = lambda p: f"{p[0] * 111319.49079327358:.9f},{math.asinh(math.tan(math.radians(p[1]))) * 6378137:.9f}"  # noqa: E731
+    corners = "|".join(metres([float(n) for n in p.split(",")]) for p in BOX.split("|"))
+    raw = f"/static/raw/{metres((0.5, 40.5))},8/400x400.png"
+    expect(ask(("path", corners), ("fill", "red"), ("stroke", "blue"), ("width", "10"), path=raw) == box, "metres of Web Mercator")
+    far = difference(ask(("marker", metres((0.5, 40.5)) + "|pin|color:blue"), path=raw), pin)
+    expect(far < 32, f"a pin at metres, whose curve is simplified a little differently: {far}")
     across = server.get("/static/179,-1,-179,1/300x300.png" + overlay(("path", "179,0|181,0"), ("stroke", "red"), ("width", "9")))
     expect(is_color(decode(across[2]), 150, 150, RED), "bounds across the antimeridian")
 
@@ -258,7 +264,7 @@ def test_overlay_errors():
     expect(b"nothing to fit" in server.get(auto)[2] and b"path 2: " in server.get(auto + overlay(("path", BOX), ("path", "x")))[2], "what")
     many = overlay(*[("path", "1,2|3,4")] * 101)
     expect(b"at most 100 paths" in server.get(auto + many)[2], "many paths")
-    for path, words in (("/static/1,2/3x4.png", "the view"), ("/static/1,2,3@x/3x4.png", "the view"), ("/static/1,2,25/3x4.png", "the view"),
+    for path, words in (("/static/1,2/3x4.png", "the view"), ("/static/raw/1,2,3000000000,4/3x4.png", "metres"), ("/static/1,2,3@x/3x4.png", "the view"), ("/static/1,2,25/3x4.png", "the view"),
                         ("/static/1,4,3,2/3x4.png", "the bounds"), ("/static/1,2,3,99/3x4.png", "the bounds"),
                         ("/static/1,2,3/0x4.png", "the size"), ("/static/1,2,3/3.png", "the size"), ("/static/1,2,3/3x4.gif", "ends in"),
                         ("/static/1,2,3/3x4", "ends in"), ("/static/", "the view"), ("/static/auto/3x4.pbf", "ends in"),
@@ -1342,7 +1348,8 @@ def test_lost_device():
         print("test_lost_device: no library that fails: skipped")
         return
     write_map("map.json")
-    server = Server("map.json", wrapper=("env", f"LD_PRELOAD={os.environ['FAULT_CL']}", "CAMBER_FAULT=lost:lost"))
+    server = Server("map.json", wrapper=("env", f"LD_PRELOAD={os.environ['FAULT_CL']}", "CAMBER_FAULT=lost:lost",
+                                         "CAMBER_CPU=none"))
     path = "/%d/%d/%d.png"
     expect(server.get(path % (ZOOM, COLUMN, ROW))[0] == 200, "a tile before it is lost")
     with open("lost", "wb"):

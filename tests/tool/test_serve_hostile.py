@@ -26,6 +26,7 @@ sys.path.insert(0, os.path.join(TESTS, "fixtures"))
 from served import COLUMN, PATIENCE_S, ROW, TOOL, ZOOM, Server, expect, run_tests, is_sanitized, wait_until, write_map  # noqa: E402
 
 TILE = f"/{ZOOM}/{COLUMN}/{ROW}.png"
+AT_ONCE_S = 25  # half a minute is what a client has that says nothing
 
 
 def processor_s(process):
@@ -61,7 +62,7 @@ def test_arguments():
     time.sleep(0.2)
     start = time.monotonic()
     server.stop()
-    expect(time.monotonic() - start < 10, f"SIGTERM takes {time.monotonic() - start:.1f} s")
+    expect(time.monotonic() - start < AT_ONCE_S, f"SIGTERM takes {time.monotonic() - start:.1f} s")
     made.close()
 
 
@@ -186,7 +187,7 @@ def test_renderd_clients():
     expect(ask_renderd(good, refused) == 4, "one that speaks has gone for those that do not")
     start = time.monotonic()
     server.stop()
-    expect(time.monotonic() - start < 10, f"SIGTERM takes {time.monotonic() - start:.1f} s")
+    expect(time.monotonic() - start < AT_ONCE_S, f"SIGTERM takes {time.monotonic() - start:.1f} s")
     for one in (deaf, good, *silent):
         one.close()
 
@@ -286,7 +287,7 @@ def test_reload_hangs():
     time.sleep(1.5)
     start = time.monotonic()
     server.stop()
-    expect(time.monotonic() - start < 10, f"SIGTERM takes {time.monotonic() - start:.1f} s while it reads")
+    expect(time.monotonic() - start < AT_ONCE_S, f"SIGTERM takes {time.monotonic() - start:.1f} s while it reads")
 
 
 def test_reload_memory():

@@ -6,6 +6,7 @@
 BUILD is a configured build folder of ROOT: the tests are those of its tests/manifest.txt.
 """
 
+import functools
 import os
 import re
 import subprocess
@@ -15,6 +16,8 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import tiers  # noqa: E402
+
+tiers.Arrows, tiers.Mentions = functools.cache(tiers.Arrows), functools.cache(tiers.Mentions)  # the tree stays as it is
 
 ROOT, BUILD = sys.argv.pop(1), sys.argv.pop(1)
 TESTS = tiers.read_manifest(os.path.join(BUILD, "tests/manifest.txt"))
@@ -26,6 +29,12 @@ def choose(*changed, number=100, recipes=()):
 
 
 class Tiers(unittest.TestCase):
+    def setUp(self):
+        """A commit has time for all that names what it changes; how much it has is test_a_change_has_an_end's."""
+        kept = tiers.LEAST_SECONDS
+        tiers.LEAST_SECONDS = 5000.0
+        self.addCleanup(setattr, tiers, "LEAST_SECONDS", kept)
+
     def expect(self, choice, runs, waits):
         """Of the tests that this build has, the change reaches the first and not the others."""
         self.assertFalse((set(runs) & NAMES) - choice.reached)
@@ -76,15 +85,26 @@ class Tiers(unittest.TestCase):
             self.assertFalse(everyday - choice.reached, path)
             self.assertTrue(choice.share)
 
-    def test_a_change_of_everything_has_an_end(self):
+    def seconds_of(self, choice):
+        """What the tests of a choice cost, with what they have built."""
+        chosen = [test for test in TESTS if test.name in choice.reached | choice.share]
+        fixtures = {test.fixture for test in chosen}
+        seconds = sum(test.cost for test in chosen if not test.name.endswith("_changed"))
+        seconds += sum(test.cost for test in TESTS if test.is_setup and test.name.removesuffix("_build") in fixtures)
+        return seconds + tiers.TIMES_UNDER_SANITIZERS * sum(test.cost for test in TESTS if test.name in choice.sanitized)
+
+    def test_a_change_has_an_end(self):
+        """Of everything, of the build, of a kernel, of a reader: on each of seven commits."""
+        tiers.LEAST_SECONDS = 400.0
         everything = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True).stdout.split()
-        choice, costs = choose(*everything), {test.name: test.cost for test in TESTS}
-        deep = {test.name for test in TESTS if test.labels[0] not in tiers.EVERYDAY + ("recipes",)}
-        self.assertLessEqual(sum(costs[name] for name in choice.reached & deep), tiers.DEEP_SECONDS + 1000)
-        self.assertLessEqual(sum(costs[name] for name in choice.sanitized) * tiers.TIMES_UNDER_SANITIZERS,
-                             tiers.SANITIZED_SECONDS)
+        for number in range(200, 200 + tiers.SHARES):
+            for changed in (everything, ["tests/CMakeLists.txt", "dev"], ["kernels/stroke.h"], ["src/osm/read.c"],
+                            ["src/serve/route.c"]):
+                seconds = self.seconds_of(choose(*changed, number=number))
+                self.assertLessEqual(seconds, tiers.SECONDS + 100.0, (number, changed[0]))
+        choice = choose(*everything)
         self.assertNotIn("mutations_changed", choice.reached)
-        self.assertNotIn("test_newcomer_trixie", choice.reached)
+        self.assertTrue(choice.share)
 
     def test_a_test(self):
         self.expect(choose("tests/unit/test_osm.c"), {"test_osm", "sanitize_changed"}, {"test_coast", "test_pixels"})
@@ -122,11 +142,22 @@ class Tiers(unittest.TestCase):
                          {test.name for test in TESTS if test.name in deep and (test.is_setup or test.name.endswith("_changed"))})
 
     def test_shares_are_of_like_cost(self):
-        shares, costs = tiers.assign_shares(TESTS), [0.0] * tiers.SHARES
-        for test in TESTS:
-            if test.name in shares:
-                costs[shares[test.name]] += test.cost
-        self.assertLess(max(costs), 1.5 * sum(costs) / tiers.SHARES, costs)
+        """Those of ./dev test and the others, each for themselves."""
+        shares = tiers.assign_shares(TESTS)
+        for is_everyday in (True, False):
+            costs = [0.0] * tiers.SHARES
+            for test in TESTS:
+                if test.name in shares and (test.labels[0] in tiers.EVERYDAY) == is_everyday:
+                    costs[shares[test.name]] += test.cost
+            self.assertLess(max(costs), 1.5 * sum(costs) / tiers.SHARES, costs)
+
+    def test_two_parts_share_a_build(self):
+        """They run beside each other; what the build serves besides is with the first of them."""
+        shares = tiers.assign_shares(TESTS)
+        of_sanitizers = [shares["sanitize_%d" % part] for part in (1, 2, 3, 4)]
+        self.assertEqual(of_sanitizers[0::2], of_sanitizers[1::2])
+        self.assertNotEqual(of_sanitizers[0], of_sanitizers[2])
+        self.assertEqual(shares.get("sanitize_soak", of_sanitizers[0]), of_sanitizers[0])
 
 
 class Repository(unittest.TestCase):

@@ -433,11 +433,114 @@ static void test_tiles(void **state) {
         draw(it, what);
         camber_features *set = read_tiles(it, true), *without = read_tiles(it, false);
         expect_drawn_alike(set, without);
-        /* Lines are joined; rings stay apart; each point is in one tile. */
-        expect_labels(set, 2, 2, 2);
+        /* Lines are joined; of an area the larger piece is left; each point is in one tile. */
+        expect_labels(set, 2, 1, 2);
         camber_features_destroy(without);
         camber_features_destroy(set);
     }
+}
+
+/* A rectangle, units of tiles. */
+typedef struct made_area {
+    const char *name;
+    double x0, y0, x1, y1;
+    bool hole; /* in its middle, half as wide and high */
+} made_area;
+
+static size_t put_rectangle(const double box[4], bool hole, double *points) {
+    const double corners[10] = {box[0], box[1], box[2], box[1], box[2], box[3], box[0], box[3], box[0], box[1]};
+    for (size_t i = 0; i < 5; i++)
+        for (size_t axis = 0; axis < 2; axis++)
+            points[2 * i + axis] = corners[2 * (hole ? 4 - i : i) + axis] / (1 << ZOOM);
+    return 5;
+}
+
+/* Adds an area to a tile; the stitcher cuts it. */
+static void add_to_tile(camber_tile_stitcher *labels, const made_area *a, uint32_t class_index, uint32_t column,
+                        uint32_t row) {
+    double points[20];
+    const double quarter[2] = {0.25 * (a->x1 - a->x0), 0.25 * (a->y1 - a->y0)};
+    const double outer[4] = {a->x0, a->y0, a->x1, a->y1};
+    const double inner[4] = {a->x0 + quarter[0], a->y0 + quarter[1], a->x1 - quarter[0], a->y1 - quarter[1]};
+    size_t ends[2];
+    ends[0] = put_rectangle(outer, false, points);
+    ends[1] = ends[0] + put_rectangle(inner, true, points + 2 * ends[0]);
+    const camber_tile_feature feature = {.column = column, .row = row, .class_index = class_index, .area = true};
+    const camber_tile_lines lines = {points, ends, a->hole ? 2 : 1};
+    assert_int_equal(camber_tile_stitcher_add(labels, &feature, &lines), CAMBER_OK);
+}
+
+/* Reads areas from all tiles that they touch, in this or the other order. */
+static camber_features *cut_areas(file_reading *it, const made_area *areas, size_t count, bool backwards) {
+    camber_features *set = create(it, true);
+    camber_tile_stitcher *labels;
+    uint32_t layer;
+    assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &labels), CAMBER_OK);
+    assert_int_equal(camber_features_find_layer(set, "road", &layer), CAMBER_OK);
+    for (uint32_t i = 0; i < 16 * count; i++) {
+        const uint32_t k = backwards ? 16 * (uint32_t)count - 1 - i : i, column = k % 4, row = k / 4 % 4;
+        const made_area *a = areas + k / 16;
+        camber_value values[PROPERTIES] = {{0}};
+        uint32_t class_index;
+        values[NAME].type = CAMBER_VALUE_STRING;
+        assert_int_equal(camber_features_intern(set, a->name, &values[NAME].string), CAMBER_OK);
+        assert_int_equal(camber_features_find_class(set, layer, CAMBER_GEOMETRY_LABEL_AREA, values, &class_index),
+                         CAMBER_OK);
+        if (a->x0 < column + 1 && a->x1 > column && a->y0 < row + 1 && a->y1 > row)
+            add_to_tile(labels, a, class_index, column, row);
+    }
+    expect_ok(it, camber_tile_stitcher_finish_labels(labels, set));
+    camber_tile_stitcher_destroy(labels);
+    return set;
+}
+
+/* Expects that of the rings of some areas those are left that begin in these tiles. */
+static void expect_pieces(file_reading *it, const made_area *areas, size_t count, const double (*boxes)[4],
+                          size_t box_count) {
+    for (int backwards = 0; backwards < 2; backwards++) {
+        camber_features *set = cut_areas(it, areas, count, backwards);
+        size_t found = 0;
+        for (size_t p = 0; p < set->polyline_count; p++) {
+            double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+            for (size_t i = set->offsets[p]; i < set->offsets[p + 1]; i++)
+                for (int axis = 0; axis < 2; axis++) {
+                    const double at = set->points[2 * i + (size_t)axis] * (1 << ZOOM);
+                    box[axis] = fmin(box[axis], at);
+                    box[axis + 2] = fmax(box[axis + 2], at);
+                }
+            for (size_t b = 0; b < box_count; b++)
+                found += memcmp(box, boxes[b], sizeof box) == 0;
+        }
+        assert_int_equal(set->polyline_count, box_count);
+        assert_int_equal(found, box_count);
+        camber_features_destroy(set);
+    }
+}
+
+/* An area that tiles cut has one label, in its largest piece. */
+static void test_pieces(void **state) {
+    file_reading *it = *state;
+    const made_area lake = {"Lake", 0.5, 0.5, 2.25, 1.75, false};
+    const double middle[][4] = {{1, 1, 2, 1.75}};
+    expect_pieces(it, &lake, 1, middle, 1);
+
+    /* Of pieces of the same size the one that is farthest north, then west. */
+    const made_area square = {"Square", 0.5, 0.5, 1.5, 1.5, false};
+    const double first[][4] = {{0.5, 0.5, 1, 1}};
+    expect_pieces(it, &square, 1, first, 1);
+
+    /* A hole belongs to its piece, and is no part of its size: here it takes a quarter of the northern one. */
+    const made_area ring = {"Ring", 1.125, 0.5, 1.875, 1.5, true};
+    const double upper[][4] = {{1.125, 0.5, 1.875, 1}, {1.3125, 0.75, 1.6875, 1}};
+    expect_pieces(it, &ring, 1, upper, 2);
+
+    /* Areas of one name that do not meet, and areas of two names that do, have a label each. */
+    const made_area apart[] = {{"Park", 0.25, 0.25, 0.5, 0.75, false}, {"Park", 1.25, 0.25, 1.5, 0.75, false},
+                               {"Park", 0.75, 2, 1, 3, false},         {"Park", 1, 3, 1.5, 3.5, false},
+                               {"Wood", 0.5, 1, 1, 1.5, false},        {"Field", 1, 1, 1.5, 1.5, false}};
+    const double all[][4] = {{0.25, 0.25, 0.5, 0.75}, {1.25, 0.25, 1.5, 0.75}, {0.75, 2, 1, 3},
+                             {1, 3, 1.5, 3.5},        {0.5, 1, 1, 1.5},        {1, 1, 1.5, 1.5}};
+    expect_pieces(it, apart, 6, all, 6);
 }
 
 /* ---- Plans, bounds, other styles ---- */
@@ -549,7 +652,7 @@ static void test_margin(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_osm),     TEST(test_region), TEST(test_real_files),
                                        TEST(test_geojson), TEST(test_source), TEST(test_directions),
-                                       TEST(test_tiles),   TEST(test_plan),   TEST(test_suit),
-                                       TEST(test_saved),   TEST(test_margin)};
+                                       TEST(test_tiles),   TEST(test_pieces), TEST(test_plan),
+                                       TEST(test_suit),    TEST(test_saved),  TEST(test_margin)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

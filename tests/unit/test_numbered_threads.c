@@ -2,17 +2,14 @@
  * call on. */
 #define _GNU_SOURCE /* sched_setaffinity */
 
+#include "core.h"
+
 #include "base/threads.h"
 
 #include <errno.h>
 #include <sched.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include <sys/stat.h>
 
 static int allowed;
 
@@ -105,8 +102,45 @@ static void test_affinity(void **state) {
     assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
 }
 
+static void write_in(const char *root, const char *path, const char *text) {
+    char name[1024];
+    snprintf(name, sizeof name, "%s/%s", root, path);
+    for (char *slash = strchr(name + strlen(root) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        (void)mkdir(name, 0755);
+        *slash = '/';
+    }
+    FILE *file = fopen(name, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The quota of a container's control group, or of one above it, limits threads as affinity does. */
+static void test_quota(void **state) {
+    (void)state;
+    char root[64];
+    folder_make(root);
+    assert_true(camber_cores_paid(root) == SIZE_MAX); /* no control group */
+    write_in(root, "proc/self/cgroup", "1:name=systemd:/other\n0::/app/worker\n");
+    assert_true(camber_cores_paid(root) == SIZE_MAX); /* no limit */
+    write_in(root, "sys/fs/cgroup/app/worker/cpu.max", "max 100000\n");
+    assert_true(camber_cores_paid(root) == SIZE_MAX);
+    write_in(root, "sys/fs/cgroup/app/worker/cpu.max", "350000 100000\n");
+    assert_int_equal(camber_cores_paid(root), 4);
+    write_in(root, "sys/fs/cgroup/app/cpu.max", "50000 100000\n");
+    assert_int_equal(camber_cores_paid(root), 1);
+    write_in(root, "sys/fs/cgroup/app/cpu.max", "no quota\n");
+    assert_int_equal(camber_cores_paid(root), 4);
+    write_in(root, "proc/self/cgroup", "0::/\n"); /* as inside of a container */
+    write_in(root, "sys/fs/cgroup/cpu.max", "200000 100000\n");
+    assert_int_equal(camber_cores_paid(root), 2);
+    folder_remove(root);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_run), cmocka_unit_test(test_start),
-                                       cmocka_unit_test(test_count), cmocka_unit_test(test_affinity)};
+                                       cmocka_unit_test(test_count), cmocka_unit_test(test_affinity),
+                                       cmocka_unit_test(test_quota)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

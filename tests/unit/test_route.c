@@ -75,6 +75,17 @@ static void reads_a_picture(void **state) {
     assert_true(request.bearing_deg == 360 && request.pitch_deg == 0);
     assert_int_equal(parse("/static/0,85.051129,2/9x9.png", &request), 200);
     assert_int_equal(parse("/static/0,85.06,2/9x9.png", &request), 400); /* Web Mercator ends before */
+    assert_int_equal(parse("/static/raw/-960130.5,5045000,13@20/9x9.png", &request), 200);
+    assert_true(request.is_raw && request.view == CAMBER_ROUTE_CENTER && request.bearing_deg == 20.0);
+    assert_float_equal(request.longitude, -8.625, 1e-5);
+    assert_float_equal(request.latitude, 41.221041, 1e-5);
+    assert_int_equal(parse("/static/raw/-20037508.342789,-20037508,20037508,20037508/9x9.png", &request), 200);
+    assert_true(request.view == CAMBER_ROUTE_BOUNDS && request.bounds[0] == -180.0 && request.bounds[3] < 85.052);
+    assert_int_equal(parse("/static/raw/auto/9x9.png", &request), 200);
+    assert_int_equal(parse("/static/raw/0,20037509,2/9x9.png", &request), 400);
+    assert_non_null(strstr(request.reason, "metres of Web Mercator"));
+    assert_int_equal(parse("/static/raw/0,1,2,0/9x9.png", &request), 400);
+    assert_int_equal(parse("/static/raw/raw/0,0,2/9x9.png", &request), 400);
 }
 
 static void reads_a_name(void **state) {

@@ -163,7 +163,9 @@ static camber_status take(void *user, const camber_label_square *block, const ca
 }
 
 /* The surroundings that settle a tile settle tiles around it, too, which are not placed again; even if labels are
- * placed from south to north, and so depend on all that are south of them. */
+ * placed from south to north, and so depend on all that are south of them. Blocks of a given number of things never
+ * grow, so here a tile that is not placed was settled with another one: of 64 tiles 17 or 18 are placed, and all if no
+ * block is widened. */
 static void test_chains(void **state) {
     (void)state;
     static const char *const orders[] = {"auto", "viewport-y"};
@@ -177,7 +179,7 @@ static void test_chains(void **state) {
         town *t = open_town(layers);
         add_crowd(t, 21, 384.0, 640.0, false);
         add_outliers(t);
-        placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 0);
+        placed_town *all = place_town(t, ALL_LEVEL, SIZE_MAX), *single = place_town(t, TILE_LEVEL, 1);
         const seam_faults f = compare_tiles(all, single, 8, 16);
         assert_true(f.shown > 200 && f.crossing > 100);
         assert_int_equal(seam_count(&f), 0);

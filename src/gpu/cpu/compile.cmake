@@ -3,10 +3,11 @@
 set(cpu_objects)
 set(cpu_definitions)
 
-# Level, lanes of its vectors, what clang is told.
+# Level, lanes of its vectors, what clang is told. With haswell's costs of instructions AVX2 code draws lines in 4 % less
+# time; with skylake-avx512's, AVX-512 code gains nothing.
 set(cpu_levels)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
-  set(cpu_levels "x86_64_v4 16 -march=x86-64-v4 -mprefer-vector-width=512" "x86_64_v3 8 -march=x86-64-v3"
+  set(cpu_levels "x86_64_v4 16 -march=x86-64-v4 -mprefer-vector-width=512" "x86_64_v3 8 -march=x86-64-v3 -mtune=haswell"
       "x86_64_v2 8 -march=x86-64-v2")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
   set(cpu_levels "aarch64 8 -march=armv8-a")
@@ -29,20 +30,22 @@ function(camber_find_clang)
     list(APPEND names clang-${number})
   endforeach()
   foreach(name IN LISTS names)
-    find_program(found_clang NAMES ${name} NO_CACHE)
+    find_program(found_clang NAMES ${name})
     if(found_clang)
       execute_process(COMMAND ${found_clang} -dumpversion OUTPUT_VARIABLE version OUTPUT_STRIP_TRAILING_WHITESPACE)
       if(NOT version VERSION_LESS 14)
         break()
       endif()
       set(old_clang ${found_clang})
-      unset(found_clang)
     endif()
+    unset(found_clang CACHE)
   endforeach()
-  if(NOT found_clang)
-    set(found_clang ${old_clang})
+  set(clang ${found_clang})
+  if(NOT clang)
+    set(clang ${old_clang})
   endif()
-  set(CAMBER_CLANG "${found_clang}" CACHE FILEPATH "Clang that compiles kernels" FORCE)
+  unset(found_clang CACHE)
+  set(CAMBER_CLANG "${clang}" CACHE FILEPATH "Clang that compiles kernels" FORCE)
 endfunction()
 
 # Sets `lacks` to what is missing for the levels that are asked for, or to nothing.
@@ -93,10 +96,15 @@ function(camber_compile_level level)
     set(source ${PROJECT_SOURCE_DIR}/kernels/${CMAKE_MATCH_2}.cl)
     separate_arguments(options UNIX_COMMAND "${CMAKE_MATCH_3}")
     set(object ${CMAKE_CURRENT_BINARY_DIR}/cpu/${name}_${program}.o)
-    add_custom_command(OUTPUT ${object}
-      COMMAND ${CAMBER_CLANG} ${cpu_flags} ${flags} -DCAMBER_DEVICE=1 -DCAMBER_POINT_CHUNK=256 -DCAMBER_LANES=${lanes}
-              ${options} -DCAMBER_CPU_PROGRAM=camber_cpu_${name}_${program} -I${CMAKE_CURRENT_SOURCE_DIR}
-              -include ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h -MD -MF ${object}.d -c ${source} -o ${object}
+    set(compile ${CAMBER_CLANG} ${cpu_flags} ${flags} -DCAMBER_DEVICE=1 -DCAMBER_POINT_CHUNK=256 -DCAMBER_LANES=${lanes}
+        ${options} -DCAMBER_CPU_PROGRAM=camber_cpu_${name}_${program} -I${CMAKE_CURRENT_SOURCE_DIR}
+        -include ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h)
+    if(CMAKE_C_COMPILER_LAUNCHER MATCHES "ccache") # which takes no OpenCL C
+      set(compile sh ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/keep.sh ${source} ${object} ${compile})
+    else()
+      list(APPEND compile -MD -MF ${object}.d -c ${source} -o ${object})
+    endif()
+    add_custom_command(OUTPUT ${object} COMMAND ${compile}
       DEPENDS ${source} ${CMAKE_CURRENT_SOURCE_DIR}/gpu/cpu/opencl_c.h DEPFILE ${object}.d
       COMMENT "Compiling the kernels of ${program} for ${name}" VERBATIM)
     list(APPEND cpu_objects ${object})

@@ -5,7 +5,6 @@
 #include "gpu/opencl/opencl.h"
 #include "gpu/opencl/pocl.h"
 
-#include <CL/cl_gl.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +12,12 @@ enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
 
 /* The loader returns this if it finds no driver. It belongs to an extension, so that cl.h lacks it. */
 #define PLATFORM_NOT_FOUND_KHR (-1001)
+
+static void note(camber_failed_call *failed, const char *call, cl_int code) {
+    failed->backend = &camber_opencl;
+    failed->name = call;
+    failed->code = code;
+}
 
 static bool has_word(const char *text, const char *word) {
     const size_t length = strlen(word);
@@ -24,7 +29,7 @@ static bool has_word(const char *text, const char *word) {
 
 static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t size) {
     char whole[1024] = "";
-    const cl_int code = clGetDeviceInfo(id, what, sizeof whole - 1, whole, NULL);
+    const cl_int code = camber_cl.GetDeviceInfo(id, what, sizeof whole - 1, whole, NULL);
     snprintf(text, size, "%s", whole);
     return code;
 }
@@ -39,18 +44,19 @@ static cl_int query_info(camber_found_device *found) {
         get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
         get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
         get_text(found->id, CL_DRIVER_VERSION, info->driver, sizeof info->driver),
-        clGetDeviceInfo(found->id, CL_DEVICE_TYPE, sizeof type, &type, NULL),
-        clGetDeviceInfo(found->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info->compute_units, &info->compute_units, NULL),
-        clGetDeviceInfo(found->id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL),
-        clGetDeviceInfo(found->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL),
+        camber_cl.GetDeviceInfo(found->id, CL_DEVICE_TYPE, sizeof type, &type, NULL),
+        camber_cl.GetDeviceInfo(found->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info->compute_units,
+                                &info->compute_units, NULL),
+        camber_cl.GetDeviceInfo(found->id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL),
+        camber_cl.GetDeviceInfo(found->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL),
     };
-    (void)clGetDeviceInfo(found->id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
+    (void)camber_cl.GetDeviceInfo(found->id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
     info->memory_bytes = memory;
     info->largest_buffer_bytes = largest;
     info->type = type & CL_DEVICE_TYPE_GPU   ? CAMBER_DEVICE_TYPE_GPU
                  : type & CL_DEVICE_TYPE_CPU ? CAMBER_DEVICE_TYPE_CPU
                                              : CAMBER_DEVICE_TYPE_OTHER;
-    info->gl_sharing = has_word(extensions, "cl_khr_gl_sharing");
+    info->gl_sharing = camber_cl.shares_gl && has_word(extensions, "cl_khr_gl_sharing");
     for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
         if (codes[i] != CL_SUCCESS)
             return codes[i];
@@ -63,15 +69,15 @@ static size_t find_on_platform(cl_platform_id platform, camber_found_device *fou
     cl_uint id_count = 0;
     size_t count = 0;
     char name[1024] = "";
-    cl_int code = clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
+    cl_int code = camber_cl.GetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
     if (code != CL_SUCCESS) {
-        *failed = (camber_failed_call){&camber_opencl, "clGetPlatformInfo", code};
+        note(failed, "clGetPlatformInfo", code);
         return 0;
     }
-    code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count);
+    code = camber_cl.GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count);
     if (code != CL_SUCCESS) {
         if (code != CL_DEVICE_NOT_FOUND)
-            *failed = (camber_failed_call){&camber_opencl, "clGetDeviceIDs", code};
+            note(failed, "clGetDeviceIDs", code);
         return 0;
     }
     for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
@@ -81,7 +87,7 @@ static size_t find_on_platform(cl_platform_id platform, camber_found_device *fou
         if (code == CL_SUCCESS)
             count++;
         else
-            *failed = (camber_failed_call){&camber_opencl, "clGetDeviceInfo", code};
+            note(failed, "clGetDeviceInfo", code);
     }
     return count;
 }
@@ -91,12 +97,21 @@ static size_t find(camber_context *context, camber_found_device *found, size_t c
     cl_uint platform_count = 0;
     size_t count = 0;
     (void)context;
-    const cl_int code = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
-    if (code != CL_SUCCESS) {
-        if (code != PLATFORM_NOT_FOUND_KHR)
-            *failed = (camber_failed_call){&camber_opencl, "clGetPlatformIDs", code};
+    if (!camber_cl_load()) {
+        failed->cure = "OpenCL is not installed (libOpenCL.so.1); install ocl-icd-libopencl1 and a driver (Debian, for "
+                       "CPUs: pocl-opencl-icd)";
         return 0;
     }
+    failed->cure = "no OpenCL platform answers; install a driver (Debian, for CPUs: pocl-opencl-icd), and let "
+                   "POCL_CACHE_DIR name a folder that PoCL can write to";
+    const cl_int code = camber_cl.GetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
+    if (code != CL_SUCCESS) {
+        if (code != PLATFORM_NOT_FOUND_KHR)
+            note(failed, "clGetPlatformIDs", code);
+        return 0;
+    }
+    if (platform_count > 0)
+        failed->cure = NULL;
     for (cl_uint i = 0; i < platform_count && i < PLATFORMS_MAX; i++)
         count += find_on_platform(platforms[i], found + count, capacity - count, failed);
     return count;
@@ -105,8 +120,8 @@ static size_t find(camber_context *context, camber_found_device *found, size_t c
 /* Chooses as many lanes as the device's vectors have. GPUs have none: each work-item takes one pixel at a time. */
 static camber_status find_lanes(camber_device *device) {
     cl_uint floats = 0;
-    const cl_int code =
-        clGetDeviceInfo(opencl_of(device)->id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof floats, &floats, NULL);
+    const cl_int code = camber_cl.GetDeviceInfo(opencl_of(device)->id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT,
+                                                sizeof floats, &floats, NULL);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
     device->lanes = device->info.type != CAMBER_DEVICE_TYPE_CPU ? 1 : floats >= 16 ? 16 : 8;
@@ -131,24 +146,24 @@ static camber_status open_cl(camber_device *device, const camber_gl_handles *gl)
                                             0};
     const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)cl->platform, 0};
     if (gl->context && device->info.gl_sharing) {
-        cl->cl = clCreateContext(shared, 1, &cl->id, NULL, NULL, &code);
+        cl->cl = camber_cl.CreateContext(shared, 1, &cl->id, NULL, NULL, &code);
         device->gl_context = code == CL_SUCCESS;
     }
     if (!device->gl_context) {
-        cl->cl = clCreateContext(alone, 1, &cl->id, NULL, NULL, &code);
+        cl->cl = camber_cl.CreateContext(alone, 1, &cl->id, NULL, NULL, &code);
         if (code != CL_SUCCESS)
             return camber_fail_cl(device->context, "clCreateContext", code);
     }
-    cl->queue = clCreateCommandQueue(cl->cl, cl->id, CL_QUEUE_PROFILING_ENABLE, &code);
+    cl->queue = camber_cl.CreateCommandQueue(cl->cl, cl->id, CL_QUEUE_PROFILING_ENABLE, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateCommandQueue", code);
     cl_device_fp_config rounding = 0;
-    code = clGetDeviceInfo(cl->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
+    code = camber_cl.GetDeviceInfo(cl->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
     device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     cl_bool unified = CL_FALSE; /* if the query fails, buffers are copied */
-    (void)clGetDeviceInfo(cl->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
+    (void)camber_cl.GetDeviceInfo(cl->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
     return device->lanes ? CAMBER_OK : find_lanes(device);
 }
@@ -167,15 +182,15 @@ static camber_status open_device(camber_device *device, const camber_found_devic
 static void close_device(camber_device *device) {
     camber_opencl_device *cl = device->native;
     if (cl && cl->queue)
-        clReleaseCommandQueue(cl->queue);
+        camber_cl.ReleaseCommandQueue(cl->queue);
     if (cl && cl->cl)
-        clReleaseContext(cl->cl);
+        camber_cl.ReleaseContext(cl->cl);
     camber_free(device->context, cl);
     device->native = NULL;
 }
 
 static camber_status finish(const camber_device *device, bool is_told) {
-    const cl_int code = clFinish(opencl_of(device)->queue);
+    const cl_int code = camber_cl.Finish(opencl_of(device)->queue);
     if (code == CL_SUCCESS)
         return CAMBER_OK;
     return is_told ? camber_fail_cl(device->context, "clFinish", code) : CAMBER_ERROR_DEVICE;

@@ -11,8 +11,8 @@ static camber_status fail_stage(const camber_device *device, const char *call, c
 
 static cl_int set_arg(cl_kernel kernel, cl_uint i, const camber_kernel_arg *arg) {
     cl_mem mem = arg->buffer ? arg->buffer->native : NULL;
-    return arg->value ? clSetKernelArg(kernel, i, arg->value_bytes, arg->value)
-                      : clSetKernelArg(kernel, i, sizeof mem, &mem);
+    return arg->value ? camber_cl.SetKernelArg(kernel, i, arg->value_bytes, arg->value)
+                      : camber_cl.SetKernelArg(kernel, i, sizeof mem, &mem);
 }
 
 camber_status camber_opencl_launch(const camber_device *device, const camber_launch *launch, camber_event **event) {
@@ -25,8 +25,8 @@ camber_status camber_opencl_launch(const camber_device *device, const camber_lau
         if (code != CL_SUCCESS)
             return fail_stage(device, "clSetKernelArg", launch->name, code);
     }
-    const cl_int code = clEnqueueNDRangeKernel(opencl_of(device)->queue, kernel, 1, NULL, &global, &local, 0, NULL,
-                                               event ? &made : NULL);
+    const cl_int code = camber_cl.EnqueueNDRangeKernel(opencl_of(device)->queue, kernel, 1, NULL, &global, &local, 0,
+                                                       NULL, event ? &made : NULL);
     if (code != CL_SUCCESS)
         return fail_stage(device, "clEnqueueNDRangeKernel", launch->name, code);
     if (event)
@@ -36,14 +36,14 @@ camber_status camber_opencl_launch(const camber_device *device, const camber_lau
 
 camber_status camber_opencl_wait(const camber_device *device, camber_event *event, const char *name) {
     cl_event waited = (cl_event)event;
-    const cl_int code = clWaitForEvents(1, &waited);
+    const cl_int code = camber_cl.WaitForEvents(1, &waited);
     return code == CL_SUCCESS ? CAMBER_OK : fail_stage(device, "clWaitForEvents", name, code);
 }
 
 double camber_opencl_end_event(camber_event *event) {
     cl_ulong begin = 0, end = 0;
-    clGetEventProfilingInfo((cl_event)event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL);
-    clGetEventProfilingInfo((cl_event)event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL);
-    clReleaseEvent((cl_event)event);
+    camber_cl.GetEventProfilingInfo((cl_event)event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL);
+    camber_cl.GetEventProfilingInfo((cl_event)event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL);
+    camber_cl.ReleaseEvent((cl_event)event);
     return (double)(end - begin) * 1e-6;
 }

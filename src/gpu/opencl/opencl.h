@@ -4,8 +4,7 @@
 #define CAMBER_GPU_OPENCL_OPENCL_H
 
 #include "gpu/backend.h"
-
-#include <CL/cl.h>
+#include "gpu/opencl/cl.h"
 
 typedef struct camber_opencl_device {
     cl_platform_id platform;

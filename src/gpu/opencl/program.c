@@ -61,13 +61,13 @@ static bool load_binary(camber_device *device, built_program *program, const cha
         return false;
     if (camber_is_pocl(&device->info) && camber_pocl_check_program(device, binary, binary_size) != CAMBER_OK)
         return false; /* building it will fail too, and say why */
-    program->cl = clCreateProgramWithBinary(opencl_of(device)->cl, 1, &opencl_of(device)->id, &binary_size, &binary,
-                                            &binary_code, &code);
+    program->cl = camber_cl.CreateProgramWithBinary(opencl_of(device)->cl, 1, &opencl_of(device)->id, &binary_size,
+                                                    &binary, &binary_code, &code);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
-        clBuildProgram(program->cl, 1, &opencl_of(device)->id, options, NULL, NULL) == CL_SUCCESS)
+        camber_cl.BuildProgram(program->cl, 1, &opencl_of(device)->id, options, NULL, NULL) == CL_SUCCESS)
         return true;
     if (program->cl)
-        clReleaseProgram(program->cl);
+        camber_cl.ReleaseProgram(program->cl);
     program->cl = NULL;
     return false;
 }
@@ -96,11 +96,11 @@ static bool load_cached(camber_device *device, built_program *program, const cha
 static camber_status fail_build(camber_device *device, cl_program program) {
     static const size_t LOG_MAX = 3000;
     size_t size = 0;
-    clGetProgramBuildInfo(program, opencl_of(device)->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+    camber_cl.GetProgramBuildInfo(program, opencl_of(device)->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
     char *log = camber_alloc_zero(device->context, size + 1, 1);
     if (!log)
         return CAMBER_ERROR_MEMORY;
-    clGetProgramBuildInfo(program, opencl_of(device)->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+    camber_cl.GetProgramBuildInfo(program, opencl_of(device)->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
     camber_fail(device->context, CAMBER_ERROR_DEVICE,
                 "clBuildProgram: the kernels do not build on %s; update its driver or try another device: %.*s",
                 device->info.name, (int)LOG_MAX, log);
@@ -116,11 +116,11 @@ static camber_status build_from_source(camber_device *device, built_program *pro
         if (status != CAMBER_OK)
             return status;
     }
-    program->cl =
-        clCreateProgramWithSource(opencl_of(device)->cl, 1, (const char *[]){from->text}, &from->text_bytes, &code);
+    program->cl = camber_cl.CreateProgramWithSource(opencl_of(device)->cl, 1, (const char *[]){from->text},
+                                                    &from->text_bytes, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateProgramWithSource", code);
-    code = clBuildProgram(program->cl, 1, &opencl_of(device)->id, from->options, NULL, NULL);
+    code = camber_cl.BuildProgram(program->cl, 1, &opencl_of(device)->id, from->options, NULL, NULL);
     if (code == CL_BUILD_PROGRAM_FAILURE)
         return fail_build(device, program->cl);
     if (code != CL_SUCCESS)
@@ -136,14 +136,15 @@ static bool save_binary(camber_device *device, const built_program *program) {
     bool saved = false;
     if (!camber_cache_can_save(device->context))
         return false;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
+    if (camber_cl.GetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS ||
+        size == 0)
         return false;
     uint64_t hash;
     unsigned char *bytes = camber_resize_quietly(device->context, NULL, size + sizeof hash);
     if (!bytes)
         return false;
     unsigned char *binary = bytes + sizeof hash;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
+    if (camber_cl.GetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
         char name[64];
         /* The binary of a PoCL version that camber does not know is saved unstripped: its kernels run as they are if
          * POCL_WORK_GROUP_SPECIALIZATION is 0, as the tool sets it, and are otherwise compiled again. */
@@ -174,7 +175,7 @@ static bool use_saved(camber_device *device, built_program *program, const char 
     built_program saved = {.key = program->key};
     if (!load_cached(device, &saved, options))
         return false;
-    clReleaseProgram(program->cl);
+    camber_cl.ReleaseProgram(program->cl);
     program->cl = saved.cl;
     return true;
 }
@@ -211,13 +212,13 @@ camber_status camber_opencl_make_program(camber_device *device, const camber_pro
 }
 
 void camber_opencl_release_program(void *native) {
-    clReleaseProgram(native);
+    camber_cl.ReleaseProgram(native);
 }
 
 camber_status camber_opencl_make_kernel(const camber_device *device, void *program, const char *name,
                                         camber_kernel **kernel) {
     cl_int code;
-    cl_kernel made = clCreateKernel(program, name, &code);
+    cl_kernel made = camber_cl.CreateKernel(program, name, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateKernel", code);
     *kernel = (camber_kernel *)made;
@@ -225,5 +226,5 @@ camber_status camber_opencl_make_kernel(const camber_device *device, void *progr
 }
 
 void camber_opencl_release_kernel(camber_kernel *kernel) {
-    clReleaseKernel((cl_kernel)kernel);
+    camber_cl.ReleaseKernel((cl_kernel)kernel);
 }

@@ -70,6 +70,7 @@ static camber_status open_file(hb_face_t *face, cairo_font_face_t **made) {
 
 static void add_outline(cairo_t *cr, const camber_outline *outline) {
     for (size_t r = 0; r < outline->ring_count; r++) {
+        cairo_new_sub_path(cr); /* else Cairo draws on from the start of the last ring */
         for (uint32_t i = outline->offsets[r]; i < outline->offsets[r + 1]; i++)
             cairo_line_to(cr, (double)outline->points[2 * i], (double)outline->points[2 * i + 1]);
         cairo_close_path(cr);

@@ -77,6 +77,7 @@ static camber_status add_shape(camber_page_map *map, const camber_label_item *it
     const camber_icon_form *form;
     const camber_status status = find_form(map, item, &form);
     for (size_t r = 0; status == CAMBER_OK && r < form->outline.ring_count; r++) {
+        cairo_new_sub_path(map->cr); /* else Cairo draws on from the start of the last ring */
         for (uint32_t i = form->outline.offsets[r]; i < form->outline.offsets[r + 1]; i++) {
             const float u = form->outline.points[2 * i], v = form->outline.points[2 * i + 1];
             cairo_line_to(map->cr, (double)(item->x + item->xx * u + item->xy * v),

@@ -1,7 +1,7 @@
 #!/bin/bash -eu
 # The fuzz targets as OSS-Fuzz wants them, with its compilers, flags and engine; check.sh runs it without OSS-Fuzz.
 #
-# All targets are built: none needs an OpenCL device where it fuzzes, only the loader, libOpenCL.so. What a target is
+# All targets are built: none needs an OpenCL device where it fuzzes. What a target is
 # linked with is not there where it runs: the libraries lie in $OUT/lib beside it, with libc's own left out, and each
 # program finds them by an rpath, which unlike a runpath holds for what the libraries themselves want.
 

@@ -200,7 +200,9 @@ static uint32_t bunch_at(const camber_twin *t, size_t from) {
         return CAMBER_NO_BUNCH;
     for (size_t k = 0; k < 16; k++)
         brushes[k] = camber_bits_of(t->stages->edges[camber_edge_brush(from + k)]);
-    return camber_bunch_of(t->stages->boxes + from, brushes);
+    const uint32_t bunch = camber_bunch_of(t->stages->boxes + from, brushes);
+    const bool of_lines = bunch != CAMBER_NO_BUNCH && !camber_twin_is_edge(t, from + CAMBER_BUNCH_FIRST(bunch));
+    return of_lines ? CAMBER_NO_BUNCH : bunch;
 }
 
 /* Does the same for all segments, in their order. */

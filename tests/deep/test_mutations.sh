@@ -324,7 +324,6 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
-mutant strip kernels/area.h "areas: edges inside a pixel that take all of it" "% CAMBER_CELL_PX ? here" "% CAMBER_CELL_PX ? height"
 group='along lines: glyphs'
 mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \
     'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.0f)'
@@ -382,9 +381,6 @@ mutant strip kernels/setup.cl "areas: fills that change too early" 'numbers) >= 
     'numbers) < own[next] - first'
 mutant strip kernels/bins.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
 mutant strip kernels/bins.cl "boxes of two tiles without the second" 'count += b.has_last[k]' 'count += 0u * b.has_last[k]'
-mutant strip kernels/bins.cl "bunches of edges that cross no row's top" 'top | (from - l->base + k)' 'top | (from - l->base)'
-mutant strip kernels/setup.cl "bunches of other edges" 'camber_bunch_of(boxes + sixteen' \
-    'camber_bunch_of(boxes'
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[list] + to->own[list]++]' \
     'to->lists[to->starts[list + 1] - 1u - to->own[list]++]'

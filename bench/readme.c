@@ -93,6 +93,11 @@ static const char *frames_date(const run *r) {
     return *own ? own : bench_text(r->document, "date");
 }
 
+/* What measured fewer scenes and runs is not passed off as a whole run. */
+static const char *size_of(const run *r) {
+    return strcmp(bench_text(r->document, "size"), "full") == 0 ? "" : ", not a full run";
+}
+
 /* "AVX2: AVX2 code (haswell) on that processor, ...": never as if it were a processor that has no more. */
 static void put_machine(const page *p, const run *r) {
     const char *processor = bench_text(r->machine, "processor"), *compiler = bench_text(r->machine, "compiler");
@@ -116,8 +121,8 @@ static void put_head(const page *p, const run *r) {
     if (r == p->runs)
         fprintf(p->to, "; %s, %s; buffers: %s", bench_text(gl, "renderer"), bench_text(gl, "version"),
                 bench_text(r->document, "sharing"));
-    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long.",
-            bench_text(r->document, "date"), bench_number(r->document, "runs"));
+    fprintf(p->to, "; one run of `./dev bench` on %.10s, medians of %.0f in turn, of three where frames take long%s.",
+            bench_text(r->document, "date"), bench_number(r->document, "runs"), size_of(r));
 }
 
 /* A document may be put together: says which sections were measured on another day. */
@@ -255,6 +260,14 @@ static void put_best_ways(const page *p, const run *r, const char *section, cons
     fputs(*before == ';' ? "." : "", p->to);
 }
 
+/* Puts the columns of a table whose first one is of scenes. */
+static void put_columns(const page *p, const char *first) {
+    fputs(first, p->to);
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
+    put_rule(2 + p->library_count, p->to);
+}
+
 /* Explains "3.1/2.4". */
 static void put_codes(const page *p) {
     for (size_t k = 0; k < p->run_count && p->run_count > 1; k++)
@@ -270,10 +283,7 @@ static bool has_same_peers(const page *p, const run *r) {
 static void put_frames(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("| scene | camber: ms |", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
-    put_rule(2 + p->library_count, p->to);
+    put_columns(p, "| scene | camber: ms |");
     json_array_foreach(rows_of(p->runs, "frames"), i, row) {
         fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
         put_frame(p, "frames", row);
@@ -292,7 +302,7 @@ static void put_frames(const page *p) {
         const run *r = p->runs + i;
         fputs("\n", p->to);
         put_machine(p, r);
-        fprintf(p->to, ", %.10s.", frames_date(r));
+        fprintf(p->to, ", %.10s%s.", frames_date(r), size_of(r));
         for (size_t k = 0; k < p->library_count && !has_same_peers(p, r); k++)
             put_peer(p, r, k);
         fputs("\n", p->to);
@@ -316,7 +326,7 @@ static void put_mean(const page *p, const run *r, const char *section, const cha
         count++;
     }
     if (count > 0)
-        fprintf(p->to, " %.2f to %.2f, mean %.2f |", least, most, exp(logarithms / (double)count));
+        fprintf(p->to, " %.2f to %.2f, %.2f |", least, most, exp(logarithms / (double)count));
     else
         fputs(" - |", p->to);
 }
@@ -335,7 +345,8 @@ static void put_means(const page *p) {
                 put_mean(p, p->runs + k, sections[s], p->libraries[i]);
         fputs("\n", p->to);
     }
-    fputs("\nWhole frames of all scenes, each library in its best way in each. The mean is the geometric one.\n\n",
+    fputs("\nWhole frames, each library in its best way in each scene: the least, the greatest, and the geometric "
+          "mean.\n\n",
           p->to);
 }
 
@@ -438,20 +449,12 @@ static void put_fly(const page *p) {
 
 /* ---- Areas: the table of docs/areas.md ---- */
 
-/* Puts camber's milliseconds of each run, and how many times that each library takes in its best way; after these its
- * error in the first run. */
-static void put_areas_row(const page *p, const json_t *row) {
-    const char *key = bench_text(row, "key");
+static void put_errors(const page *p, const json_t *row) {
     const json_t *peers = json_object_get(row, "peers");
-    fprintf(p->to, "| %s |", bench_text(row, "scene"));
-    put_count(bench_number(row, "edges"), p->to);
-    put_times(p, "areas", key);
-    fprintf(p->to, "; %.3f |", bench_number(row, "error"));
-    for (size_t k = 0; k < p->library_count; k++) {
-        put_ratios(p, "areas", key, p->libraries[k]);
-        fprintf(p->to, "; %.3f |",
+    fprintf(p->to, "| %s | %.3f |", bench_text(row, "scene"), bench_number(row, "error"));
+    for (size_t k = 0; k < p->library_count; k++)
+        fprintf(p->to, " %.3f |",
                 bench_number(json_object_get(peers, bench_best_way(peers, p->libraries[k])), "error"));
-    }
     fputs("\n", p->to);
 }
 
@@ -482,14 +485,16 @@ static void put_glyphs(const page *p) {
 static void put_areas(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("| areas | edges | camber: ms |", p->to);
-    for (size_t k = 0; k < p->library_count; k++)
-        fprintf(p->to, " %s |", bench_text(json_object_get(p->runs->peers, p->libraries[k]), "name"));
-    put_rule(3 + p->library_count, p->to);
-    json_array_foreach(rows_of(p->runs, "areas"), i, row) put_areas_row(p, row);
+    put_columns(p, "| areas | camber: ms |");
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) {
+        fprintf(p->to, "| %s, %.0f edges |", bench_text(row, "scene"), bench_number(row, "edges"));
+        put_frame(p, "areas", row);
+    }
+    put_columns(p, "\n| error | camber |");
+    json_array_foreach(rows_of(p->runs, "areas"), i, row) put_errors(p, row);
     fputs("\nFrames of 2048 x 2048 px, all areas black, from rings in memory to pixels in memory. Other columns: time "
-          "relative to camber, below 1 if they are faster, each library in its best way. After a semicolon: the mean "
-          "error beside 16 x 16 samples a pixel, of 255.",
+          "relative to camber, below 1 if they are faster, each library in its best way. Errors: the mean beside "
+          "16 x 16 samples a pixel, of 255.",
           p->to);
     put_codes(p);
     put_cities(p);

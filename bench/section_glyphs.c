@@ -34,6 +34,7 @@ typedef struct trial {
 static bool make_outline(trial *t, size_t ring) {
     const camber_lines *lines = &t->scene->lines;
     const size_t first = lines->offsets[ring], count = lines->offsets[ring + 1] - first - 1;
+    const uint16_t last = (uint16_t)(count - 1); /* FreeType 2.13.3 has no short here any more */
     FT_Outline *outline = t->outlines + ring;
     if (FT_Outline_New(t->library, (FT_UInt)count, 1, outline) != 0)
         return false;
@@ -43,7 +44,7 @@ static bool make_outline(trial *t, size_t ring) {
         outline->points[k] = (FT_Vector){lroundf(point[0] * 64), lroundf((BENCH_SIDE_PX - point[1]) * 64)};
         outline->tags[k] = FT_CURVE_TAG_ON;
     }
-    outline->contours[0] = (short)(count - 1);
+    memcpy(outline->contours, &last, sizeof last);
     return true;
 }
 

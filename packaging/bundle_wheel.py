@@ -17,8 +17,10 @@ import subprocess
 import sys
 import tempfile
 
-# The C library's; drivers' loaders; GDAL is the system's, in whichever version it is there.
-OF_THE_SYSTEM = re.compile(r"(ld-linux-.*|lib(c|m|dl|rt|pthread|OpenCL|EGL|GLESv2|gdal))\.so\.\d+$")
+# The C library's; GDAL is the system's, in whichever version it is there. Drivers are loaded when they are asked for.
+OF_THE_SYSTEM = re.compile(r"(ld-linux-.*|lib(c|m|dl|rt|pthread|gdal))\.so\.\d+$")
+
+EMBEDDED = "libjs-leaflet"  # in the tool: the page of camber serve
 
 
 def output(*command):
@@ -116,14 +118,17 @@ class Bundle:
     def write_licences(self):
         folder = os.path.join(self.info, "licenses")
         os.makedirs(folder, exist_ok=True)
+        shutil.copy(os.path.join(os.path.dirname(__file__), "../src/text/fonts/OFL.txt"), folder)  # fonts, in libcamber-map
         lines = ["The libraries in camber/lib besides libcamber's, each with the licence beside this file. They are Debian's, or",
                  "built of Debian's sources, unchanged: https://sources.debian.org/. Those under the LGPL may be replaced by others",
                  "of the same interface.", ""]
+        embedded = output("dpkg-query", "-W", "-f", "${Version}", EMBEDDED)
+        self.packages[EMBEDDED] = embedded, "/usr/share/doc/%s/copyright" % EMBEDDED
         for package, (version, licence) in sorted(self.packages.items()):
             shutil.copy(licence, os.path.join(folder, package + ".txt"))
             files = sorted(self.new_names[name] for name, source in self.sources.items()
                            if package_of(source, self.prefix)[0] == package)
-            lines.append("%s %s: %s" % (package, version, " ".join(files)))
+            lines.append("%s %s: %s" % (package, version, " ".join(files) or "in camber/bin/camber"))
         with open(os.path.join(folder, "LIBRARIES.txt"), "w", encoding="utf-8") as file:
             file.write("\n".join(lines) + "\n")
 
@@ -134,6 +139,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "wheel", "unpack", "--dest", folder, wheel], check=True)
         root = glob.glob(os.path.join(folder, "*"))[0]
+        for tool in ("camber/bin/camber", "*.data/scripts/camber"):  # older versions of wheel forget it
+            os.chmod(glob.glob(os.path.join(root, tool))[0], 0o755)
         bundle = Bundle(root, prefix)
         bundle.run()
         tag = "manylinux_%d_%d_%s" % (*newest_glibc(bundle.elf_files()), os.uname().machine)

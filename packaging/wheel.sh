@@ -28,7 +28,7 @@ apt-get install -y -qq -o Acquire::Retries=5 --no-install-recommends gcc g++ mak
 mkdir -p /opt/parts && cd /opt/parts
 apt-get download -qq python3-setuptools/bookworm python3-pkg-resources/bookworm libgdal-dev/bookworm
 for part in *.deb; do dpkg -x "$part" .; done # of GDAL only the headers
-export PYTHONPATH=/opt/parts/usr/lib/python3/dist-packages
+export PYTHONPATH=/opt/parts/usr/lib/python3/dist-packages SETUPTOOLS_USE_DISTUTILS=stdlib # Debian 11 has patched it
 
 # begin NAME: its source; then `end LIBRARY` says what was installed
 begin() { # NAME

@@ -110,7 +110,7 @@ typedef struct camber_options {
     uint32_t shards;
     bool resume, keep_empty, dry_run;
     /* Serving: */
-    const char *listen, *metrics, *public_url, *cors;
+    const char *listen, *metrics, *public_url, *cors, *icons;
     const char *renderd, *cache_dir;
     const char *edit; /* the style's file, which is watched for changes; style has the same value then */
     uint64_t cache_bytes;

@@ -235,6 +235,8 @@ const camber_option_spec camber_option_specs[] = {
      "address to listen on (127.0.0.1:8080); port 0 picks a free one"},
     {"public-url", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(public_url), "URL",
      "URL at which clients reach the server, for example through a proxy (from --listen)"},
+    {"icons", 0, CAMBER_OPTION_FILE, SERVE, FIELD(icons), "SPRITE",
+     "icons for markers of /static: a sprite, whose files are SPRITE.json and SPRITE.png"},
     {"cors", 0, CAMBER_OPTION_TEXT, SERVE, FIELD(cors), "ORIGIN", "origin whose pages may read the answers (*: any)"},
     {"cache", 0, CAMBER_OPTION_BYTES, SERVE, FIELD(cache_bytes), "SIZE", "memory for the cache of encoded tiles (256M)",
      262144, 1099511627776.0},

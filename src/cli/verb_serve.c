@@ -532,6 +532,7 @@ static int listen_there(camber_session *session, const wishes *w, camber_server 
                                      .map_count = (uint32_t)w->map_count,
                                      .fonts = options->fonts,
                                      .font_count = options->font_count,
+                                     .icons = options->icons,
                                      .edits = options->edit != NULL,
                                      .logs_requests = options->verbose,
                                      .log_request = tell_request,
@@ -540,6 +541,11 @@ static int listen_there(camber_session *session, const wishes *w, camber_server 
     const int cause = camber_server_create(&desc, server, &failed);
     if (cause == EAGAIN)
         failed = NULL; /* the address is not the cause */
+    if (cause && failed && failed == options->icons)
+        return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
+                                  "--icons %s: %s; give a sprite, as in icons/sprite for icons/sprite.json and "
+                                  "icons/sprite.png",
+                                  failed, cause == EINVAL ? "its .json lists no icons" : strerror(cause));
     if (cause == EINVAL && failed)
         return camber_report_fail(session->report, CAMBER_EXIT_USAGE,
                                   "%s: not an address; give a numeric one, as in 127.0.0.1:8080 or [::1]:8080", failed);

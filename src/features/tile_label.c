@@ -57,6 +57,12 @@ static bool add_edges(chooser *c, const camber_cut_line *line) {
     return true;
 }
 
+/* Whether a ring comes right after those of a piece, and is of the same feature and tile. */
+static bool follows(const camber_tile_stitcher *s, const piece *of, size_t ring) {
+    const camber_cut_line *p = s->lines + of->first, *q = s->lines + ring;
+    return of->end == ring && p->feature == q->feature && p->column == q->column && p->row == q->row;
+}
+
 /* Finds the pieces and their edges on borders. Holes come after their outer ring. */
 static bool find_pieces(chooser *c, const camber_features *features) {
     const camber_tile_stitcher *s = c->stitcher;
@@ -66,7 +72,7 @@ static bool find_pieces(chooser *c, const camber_features *features) {
         if (line->count == 0 || features->classes[class_index].geometry != CAMBER_GEOMETRY_LABEL_AREA)
             continue;
         const double area = camber_ring_area(s->points + 2 * line->first, line->count);
-        if (area > 0.0 || c->piece_count == 0 || c->pieces[c->piece_count - 1].end != i) {
+        if (area > 0.0 || c->piece_count == 0 || !follows(s, c->pieces + c->piece_count - 1, i)) {
             if (!camber_grow(s->context, &c->pieces, &c->piece_capacity, c->piece_count + 1, sizeof *c->pieces))
                 return false;
             c->pieces[c->piece_count] = (piece){.first = i, .group = c->piece_count};
@@ -117,7 +123,10 @@ static bool is_before(const chooser *c, const piece *a, const piece *b) {
     const camber_cut_line *p = c->stitcher->lines + a->first, *q = c->stitcher->lines + b->first;
     if (a->area != b->area)
         return a->area > b->area;
-    return p->row != q->row ? p->row < q->row : p->column < q->column;
+    if (p->row != q->row || p->column != q->column)
+        return p->row != q->row ? p->row < q->row : p->column < q->column;
+    const double *at = c->stitcher->points + 2 * p->first, *other = c->stitcher->points + 2 * q->first;
+    return at[1] != other[1] ? at[1] < other[1] : at[0] < other[0];
 }
 
 /* Removes all pieces of an area but one. */

@@ -47,7 +47,8 @@ camber_status camber_tile_stitcher_finish_labels(camber_tile_stitcher *labels, c
 
 /* ---- Shared by the files of the stitcher ---- */
 
-/* Of the pieces of an area for labels keeps the largest, so that it has one label. Returns CAMBER_ERROR_MEMORY. */
+/* Keeps the largest piece of each area for labels, and removes the others, so that an area has one label. Returns
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_stitcher_keep_largest(camber_tile_stitcher *labels, const camber_features *features);
 
 /* Coordinates of cut lines are in units of 1/4096 of a tile, from the world's north-west corner. Tiles are rounded to

@@ -337,7 +337,8 @@ static int take_overlay(request *r, char reason[CAMBER_OVERLAY_REASON_SIZE]) {
                                       .body = r->posted,
                                       .body_size = r->posted_bytes,
                                       .fonts = server->fonts,
-                                      .font_count = server->font_count};
+                                      .font_count = server->font_count,
+                                      .icons = r->listener->server->icons};
     if (r->is_crowded)
         status = 503;
     else if (q.is_broken)

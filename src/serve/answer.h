@@ -7,6 +7,7 @@
 #include "serve/address.h"
 #include "serve/clients.h"
 #include "serve/events.h"
+#include "serve/overlay.h"
 #include "serve/renderd.h"
 #include "serve/server.h"
 #include "serve/tile_folder.h"
@@ -60,8 +61,9 @@ struct camber_server {
     camber_served_map *maps;   /* desc.map_count of them */
     camber_draw_queue *queue;
     camber_clients *clients;
-    camber_renderd *renderd; /* NULL: disabled */
-    camber_events *events;   /* NULL: the style is not being edited */
+    camber_overlay_icons *icons; /* NULL: none but those that are built in */
+    camber_renderd *renderd;     /* NULL: disabled */
+    camber_events *events;       /* NULL: the style is not being edited */
     camber_metrics metrics;
     double start_ms;
     atomic_bool stopping;

@@ -5,12 +5,14 @@
  * A pin is an area whose size is known only in pixels, so that marks become areas of the map once the view is known. */
 #include "serve/overlay.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum {
     MOST_PATHS = 100,
@@ -25,6 +27,11 @@ enum { WORLD_PX = 512, POINT_ZOOM = 16, ARC_POINTS = 32, MOST_ZOOM = CAMBER_ROUT
 static const double PI = 3.14159265358979323846, MOST_LATITUDE = 85.051129, FARTHEST_DEG = 540.0;
 static const double PIN_HEIGHT_PX = 21, PIN_RADIUS_PX = 9.5, EDGE_PX = 1.25, EYE_PX = 3.6, DOT_RADIUS_PX = 6;
 static const double MOST_WIDTH_PX = 500, MOST_SCALE = 20, MOST_OFFSET_PX = 1000, MOST_TEXT_PX = 200;
+
+struct camber_overlay_icons {
+    char *sprite;
+    json_t *names; /* an object whose keys are the icons' names */
+};
 
 struct camber_overlay {
     camber_context *context;
@@ -44,17 +51,18 @@ typedef struct path_look {
     double width_px, border_px; /* border_px NAN: a tenth of the width */
 } path_look;
 
-/* A marker. */
+/* A marker. icon: the name of an operator's own; without text it is a pin or a dot. */
 typedef struct mark {
     double longitude, latitude, scale, x_px, y_px;
     bool is_dot, has_label;
-    piece color;
+    piece color, icon;
 } mark;
 
 typedef struct maker {
     camber_route_request *request;
+    const camber_overlay_icons *icons;
     char *reason; /* of the first failure */
-    bool failed, is_latlng;
+    bool failed, is_latlng, has_icons;
     camber_context *context;
     path_look look; /* of paths that do not say otherwise */
     const char *cap, *join;
@@ -354,7 +362,7 @@ static const text_look TEXT_LOOK = {.color = {"#222222", 7}, .halo = {"#ffffff",
 static bool add_text(maker *m, const double position[2], const text_look *look) {
     char name[32];
     if (++m->text_count > MOST_MARKS)
-        return refuse(m, "a picture has at most %d texts", MOST_MARKS);
+        return refuse(m, "a picture has at most %d texts and icons", MOST_MARKS);
     if (!look->words.length || !look->color.at)
         return true;
     if (look->words.length > MOST_WORDS)
@@ -435,6 +443,40 @@ static bool add_mark(maker *m, const mark *made) {
     return true;
 }
 
+/* Adds a marker of an operator's icon, whose foot is its point. Its name is one of those that the operator gave. */
+static bool add_icon(maker *m, const mark *made) {
+    char name[32];
+    const double position[] = {made->longitude, made->latitude};
+    if (++m->text_count > MOST_MARKS)
+        return refuse(m, "a picture has at most %d texts and icons", MOST_MARKS);
+    snprintf(name, sizeof name, "text%zu", m->text_count);
+    m->has_icons = true;
+    extend(m, position);
+    json_t *layout = json_pack("{s:[s, s%], s:f, s:s, s:[f, f], s:b, s:b}", "icon-image", "image", made->icon.at,
+                               made->icon.length, "icon-size", made->scale, "icon-anchor", "bottom", "icon-offset",
+                               made->x_px, made->y_px, "icon-allow-overlap", 1, "icon-ignore-placement", 1);
+    json_t *layer = json_pack("{s:s, s:s, s:s, s:o}", "id", name, "type", "symbol", "source", name, "layout", layout);
+    return (add_source(m, name, make_geometry("Point", json_pack("[f, f]", position[0], position[1]))) &&
+            json_array_append_new(m->texts, layer) == 0) ||
+           refuse(m, "no memory");
+}
+
+/* Reads a marker's icon: one that is built in, or an operator's own. */
+static bool read_icon(maker *m, piece p, mark *made) {
+    char name[64];
+    made->is_dot = is_word(p, "dot");
+    if (made->is_dot || is_word(p, "pin"))
+        return true;
+    if (p.length < sizeof name && m->icons) {
+        memcpy(name, p.at, p.length);
+        name[p.length] = 0;
+        made->icon = p;
+        return json_object_get(m->icons->names, name) ||
+               refuse(m, "its icon is neither pin nor dot, nor in the server's sprite");
+    }
+    return refuse(m, "its icon is not one of those that are built in: pin and dot");
+}
+
 static const mark MARK = {.scale = 1, .color = {"#d8382f", 7}};
 
 /* A label is a text whose anchor is the marker's head. */
@@ -483,10 +525,15 @@ static bool read_marker(maker *m, const char *value) {
                 return false;
             continue;
         }
-        made.is_dot = is_word(p, "dot");
-        if (!first || !(made.is_dot || is_word(p, "pin")))
+        if (!first)
             return refuse(m, "its icon is not one of those that are built in: pin and dot");
+        if (!read_icon(m, p, &made))
+            return false;
     }
+    if (made.icon.length && label.length)
+        return refuse(m, "a label is for pin and dot");
+    if (made.icon.length)
+        return add_icon(m, &made);
     made.has_label = label.length > 0;
     return add_mark(m, &made) && (!label.length || add_label(m, &made, label));
 }
@@ -791,6 +838,35 @@ static bool add_mark_layers(maker *m, size_t index) {
            refuse(m, "no memory");
 }
 
+/* ---- Icons of an operator's own ---- */
+
+int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons) {
+    char list[4096], picture[4096];
+    if ((size_t)snprintf(list, sizeof list, "%s.json", sprite) >= sizeof list)
+        return ENAMETOOLONG;
+    snprintf(picture, sizeof picture, "%.*s.png", (int)(sizeof picture - 5), sprite);
+    if (access(list, R_OK) != 0 || access(picture, R_OK) != 0)
+        return errno;
+    camber_overlay_icons *made = calloc(1, sizeof *made);
+    if (made && (made->sprite = strdup(sprite)))
+        made->names = json_load_file(list, JSON_REJECT_DUPLICATES, NULL);
+    if (json_object_size(made ? made->names : NULL)) {
+        *icons = made;
+        return 0;
+    }
+    const int cause = made && made->sprite ? EINVAL : ENOMEM;
+    camber_overlay_icons_destroy(made);
+    return cause;
+}
+
+void camber_overlay_icons_destroy(camber_overlay_icons *icons) {
+    if (icons) {
+        json_decref(icons->names);
+        free(icons->sprite);
+    }
+    free(icons);
+}
+
 /* ---- The overlay ---- */
 
 static bool read_all(maker *m, const camber_overlay_desc *desc, json_t **document) {
@@ -811,6 +887,8 @@ static camber_status read_features(const maker *m, const camber_overlay_desc *de
                                    .height = r->height};
     const camber_fonts_desc fonts = {.folders = desc->fonts, .folder_count = desc->font_count};
     json_t *document = json_pack("{s:i, s:O, s:O}", "version", 8, "sources", m->sources, "layers", m->layers);
+    if (document && m->has_icons)
+        json_object_set_new(document, "sprite", json_string(m->icons->sprite));
     char *text = document ? json_dumps(document, JSON_COMPACT) : NULL;
     camber_status status =
         text ? camber_style_parse(made->context, text, strlen(text), "overlay", &made->style) : CAMBER_ERROR_MEMORY;
@@ -820,6 +898,8 @@ static camber_status read_features(const maker *m, const camber_overlay_desc *de
         status = camber_features_create(made->context, made->style, &made->features);
     if (status == CAMBER_OK && json_array_size(m->texts))
         status = camber_features_read_fonts(made->features, &fonts, NULL);
+    if (status == CAMBER_OK && m->has_icons)
+        status = camber_features_read_sprites(made->features, r->ratio, NULL);
     if (status == CAMBER_OK)
         status = camber_features_read_sources(made->features, &view, NULL);
     return status;
@@ -830,6 +910,7 @@ int camber_overlay_create(const camber_overlay_desc *desc, camber_route_request 
     const camber_context_desc context = {.cache_dir = ""};
     camber_overlay *made = calloc(1, sizeof *made);
     maker m = {.request = request,
+               .icons = desc->icons,
                .reason = reason,
                .look = {.stroke = {"rgba(0,64,255,0.7)", 18}, .width_px = 1, .border_px = NAN},
                .cap = "butt",

@@ -2,13 +2,14 @@
  * grammar, and GeoJSON is its body.
  *
  *     path=[fill:C|stroke:C|width:PX|border:C|borderwidth:PX|]LON,LAT|LON,LAT...     or enc:POLYLINE in place of points
- *     marker=LON,LAT[|ICON|scale:N|offset:X,Y|color:C|label:TEXT]                    ICON: pin or dot
+ *     marker=LON,LAT[|ICON|scale:N|offset:X,Y|color:C|label:TEXT]                    ICON: pin, dot or a name
  *     text=LON,LAT|WORDS[|size:PX|color:C|halo:C|halowidth:PX|anchor:SIDE|offset:X,Y]
  *     latlng, fill, stroke, width, linecap, linejoin, border, borderwidth            for all paths
  *     padding, maxzoom                                                               for views that are fitted
  *
  * Other parameters are ignored. GeoJSON is drawn by its properties of the simplestyle specification, and of a point's
- * property `text`. No text of a request is repeated in a reason, and no file is opened except fonts. */
+ * property `text`. No text of a request is repeated in a reason, and no files are opened except fonts and
+ * the icons of the server's operator. */
 #ifndef CAMBER_SERVE_OVERLAY_H
 #define CAMBER_SERVE_OVERLAY_H
 
@@ -22,6 +23,14 @@ typedef struct camber_overlay_param {
     const char *name, *value; /* decoded */
 } camber_overlay_param;
 
+/* Icons of an operator's own: a sprite, as styles have it. */
+typedef struct camber_overlay_icons camber_overlay_icons;
+
+/* sprite: the path of its files without their endings, .json and .png. Returns an errno; EINVAL: .json lists no icons.
+ */
+int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons);
+void camber_overlay_icons_destroy(camber_overlay_icons *icons);
+
 typedef struct camber_overlay_desc {
     const camber_overlay_param *params; /* param_count of them, in the order of the query */
     size_t param_count;
@@ -29,6 +38,7 @@ typedef struct camber_overlay_desc {
     size_t body_size;
     const char *const *fonts; /* font_count folders that are searched before the system's fonts */
     size_t font_count;
+    const camber_overlay_icons *icons; /* NULL: none but those that are built in */
 } camber_overlay_desc;
 
 /* Makes the overlay of a picture, and fits the picture's view: request->view becomes CAMBER_ROUTE_CENTER. *overlay is

@@ -276,6 +276,10 @@ static int start_all(camber_server *server, const char **failed) {
     const camber_server_desc *desc = &server->desc;
     *failed = desc->cache_dir;
     int cause = desc->cache_dir ? check_folder(desc->cache_dir) : 0;
+    if (!cause && desc->icons) {
+        *failed = desc->icons;
+        cause = camber_overlay_icons_create(desc->icons, &server->icons);
+    }
     if (cause)
         return cause;
     *failed = NULL;
@@ -397,6 +401,7 @@ void camber_server_destroy(camber_server *server) {
     camber_tile_cache_destroy(server->cache);
     camber_clients_destroy(server->clients);
     camber_events_destroy(server->events);
+    camber_overlay_icons_destroy(server->icons);
     for (size_t i = 0; i < sizeof server->errors / sizeof *server->errors; i++)
         camber_body_release(server->errors[i]);
     for (size_t i = 0; server->page_bodies && i < 2 * camber_page_file_count; i++)

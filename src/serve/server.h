@@ -33,6 +33,7 @@ typedef struct camber_server_desc {
     uint32_t map_count;
     const char *const *fonts; /* font_count folders with fonts for texts over pictures */
     size_t font_count;
+    const char *icons;  /* path of a sprite with icons for markers, without its ending. NULL: none */
     bool edits;         /* the style is being edited, so browsers must revalidate every answer */
     bool logs_requests; /* log_request is called for each request */
     void (*log_request)(void *user, const char *line); /* line: JSON without a line break. Several threads call it */

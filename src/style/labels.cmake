@@ -233,7 +233,7 @@ set(label_sights museum theatre library hospital university college courthouse t
 match_any(label_is_amenity "[\"get\", \"amenity\"]" ${label_sights})
 match_any(label_is_sight "[\"get\", \"tourism\"]" museum gallery attraction zoo aquarium)
 set(label_osm_sight "[\"any\", ${label_is_amenity}, ${label_is_sight}]")
-# What has a name close up, in groups that have a colour each.
+# Shops and the like have names close up. Each group has a colour.
 set(label_group_food restaurant cafe bar pub fast_food ice_cream biergarten beer)
 set(label_group_health pharmacy clinic doctors dentist veterinary)
 set(label_group_stay hotel hostel guest_house motel lodging)

@@ -165,10 +165,11 @@ static void check_pixels(poster *p, difference most) {
 static void test_pixels(void **state) {
     poster p;
     open_poster(&p, *state, true);
-    check_pixels(&p, (difference){.mean = 0.9, .worst_block = 20, .far = 60000}); /* glyphs on whole px */
+    /* pdftoppm puts glyphs on whole px and widens thin outlines; pdftocairo's mean is half of it. */
+    check_pixels(&p, (difference){.mean = 1.3, .worst_block = 20, .far = 70000});
     close_poster(&p);
     open_poster(&p, *state, false);
-    check_pixels(&p, (difference){.mean = 0.4, .worst_block = 20, .far = 8000}); /* the title and the frame */
+    check_pixels(&p, (difference){.mean = 0.7, .worst_block = 20, .far = 8000}); /* the title and the frame */
     close_poster(&p);
 }
 

@@ -28,6 +28,7 @@ import tempfile
 import threading
 import time
 import urllib.parse
+import zlib
 
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "fixtures"))
@@ -210,6 +211,50 @@ def test_overlays():
     expect(server.get(view)[2] == server.get(view + "?")[2] and decode(server.get(view)[2]) == plain, "it has changed the map")
     expect(post(server, f"/{ZOOM}/{COLUMN}/{ROW}.png", "{}")[0] == 405 and post(server, "/", "{}")[0] == 405, "POST elsewhere")
     server.stop()
+
+
+def write_sprite(name, width, height, rgba):
+    """Writes a sprite with one icon, flag.png, of one colour."""
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))  # noqa: E731
+    head = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
+    rows = zlib.compress(b"".join(b"\0" + bytes(rgba) * width for _ in range(height)))
+    with open(name + ".png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
+    with open(name + ".json", "w", encoding="utf-8") as file:
+        json.dump({"flag.png": {"x": 0, "y": 0, "width": width, "height": height, "pixelRatio": 1}}, file)
+
+
+def test_icons():
+    """A marker may be an icon of the operator's sprite: it stands on its point, and is scaled."""
+    write_map("map.json")
+    os.mkdir("icons")
+    write_sprite("icons/sprite", 20, 30, (*GREEN, 255))
+    view = "/static/0.5,40.5,8/400x400.png"
+    server = Server("map.json", "--icons", "icons/sprite")
+    plain = decode(server.get(view)[2])
+    for options, west, east, top, end in (("", 190, 210, 170, 200), ("|scale:2", 180, 220, 140, 200),
+                                          ("|offset:10,-20|scale:2", 200, 240, 100, 160)):
+        status, _, body = server.get(view + overlay(("marker", "0.5,40.5|flag.png" + options)))
+        picture = decode(body) if status == 200 else sys.exit(f"FAILED: {options}: {body}")
+        inside = [(x, y) for y in range(400) for x in range(400) if is_color(picture, x, y, GREEN)]
+        found = [least(value[axis] for value in inside) + more for axis in (0, 1) for least, more in ((min, 0), (max, 1))]
+        far = max(abs(a - b) for a, b in zip(found, (west, east, top, end)))
+        expect(far <= (2 if "scale" in options else 0), f"{options}: {found}")  # scaled, its edges are soft
+        expect(picture[:top - 2] == plain[:top - 2] and picture[end + 2:] == plain[end + 2:], f"{options}: the map has changed")
+    both = decode(server.get(view + overlay(("marker", "0.5,40.5|flag.png"), ("marker", "0.2,40.5|pin|color:blue|label:A")))[2])
+    expect(is_color(both, 200, 185, GREEN) and both != plain, "an icon beside a pin")
+    for value, words in (("0.5,40.5|flag", b"nor in the server's sprite"), ("0.5,40.5|../flag.png", b"sprite"),
+                         ("0.5,40.5|flag.png|label:A", b"a label is for"), ("0.5,40.5|" + "x" * 99, b"pin and dot")):
+        status, _, body = server.get(view + overlay(("marker", value)))
+        expect(status == 400 and words in body, f"{value}: {status} {body}")
+    server.stop()
+    for name, words in (("none", "No such file"), ("map", "No such file"), ("empty", "lists no icons")):
+        with open("empty.json", "w", encoding="utf-8") as file:
+            file.write("[]")
+        shutil.copy("icons/sprite.png", "empty.png")
+        done = subprocess.run([TOOL, "serve", "map.json", "--listen", "127.0.0.1:0", "--icons", name], capture_output=True, text=True,
+                              check=False)
+        expect(done.returncode == 66 and words in done.stderr, f"--icons {name}: {done.returncode} {done.stderr}")
 
 
 def test_preflight():

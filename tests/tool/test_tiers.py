@@ -95,13 +95,13 @@ class Tiers(unittest.TestCase):
 
     def test_a_change_has_an_end(self):
         """Of everything, of the build, of a kernel, of a reader: on each of seven commits."""
-        tiers.LEAST_SECONDS = 400.0
+        tiers.LEAST_SECONDS = 300.0
         everything = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True).stdout.split()
         for number in range(200, 200 + tiers.SHARES):
             for changed in (everything, ["tests/CMakeLists.txt", "dev"], ["kernels/stroke.h"], ["src/osm/read.c"],
                             ["src/serve/route.c"]):
                 seconds = self.seconds_of(choose(*changed, number=number))
-                self.assertLessEqual(seconds, tiers.SECONDS + 100.0, (number, changed[0]))
+                self.assertLessEqual(seconds, tiers.SECONDS + 150.0, (number, changed[0]))
         choice = choose(*everything)
         self.assertNotIn("mutations_changed", choice.reached)
         self.assertTrue(choice.share)
@@ -124,7 +124,7 @@ class Tiers(unittest.TestCase):
             for label in test.labels[1:]:
                 known = label in arrows.layers.links or label in arrows.libraries or label.startswith(("examples", "recipe-"))
                 self.assertTrue(known or label in ("kernels", "shaders", "python", "packaging", "bench", "instrumented",
-                                                   "mutation", "oclgrind", "asan", "ubsan", "tsan"), (test.name, label))
+                                                   "mutation", "oclgrind", "asan", "ubsan", "tsan", "aarch64"), (test.name, label))
         self.assertIn("osm", arrows.covered("serve"))
         self.assertIn("raster", arrows.covered("map"))
         self.assertNotIn("features", arrows.covered("camber"))

@@ -524,7 +524,7 @@ static void test_pieces(void **state) {
     const double middle[][4] = {{1, 1, 2, 1.75}};
     expect_pieces(it, &lake, 1, middle, 1);
 
-    /* Of pieces of the same size the one that is farthest north, then west. */
+    /* Among pieces of the same size, the one that is farthest north, then west. */
     const made_area square = {"Square", 0.5, 0.5, 1.5, 1.5, false};
     const double first[][4] = {{0.5, 0.5, 1, 1}};
     expect_pieces(it, &square, 1, first, 1);

@@ -243,6 +243,14 @@ CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camb
     e->y1 = leaves ? y : e->y1;
 }
 
+/* Returns which edges from A to B have boxes that touch a tile. */
+CAMBER_FN camber_mask camber_boxes_touch_tile(camber_real ax, camber_real ay, camber_real bx, camber_real by,
+                                              camber_tile_rows where) {
+    const float left = where.left, top = where.top, right = left + CAMBER_TILE_PX, bottom = top + CAMBER_TILE_PX;
+    return ((ax < right) | (bx < right)) & ((ax >= left) | (bx >= left)) & ((ay < bottom) | (by < bottom)) &
+           ((ay >= top) | (by >= top));
+}
+
 /* Computes the wanted edges relative to a tile, or to those rows of its cells that are drawn. */
 CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask wanted, camber_tile_rows where,
                                     camber_tile_edges *t) {
@@ -532,15 +540,16 @@ CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *
 
 /* ---- Edges inside a pixel ---- */
 
-/* Edges that are each inside a single pixel, one per lane: where it is in the tile, and, in fixed point, how much of it
- * is to the right of the edge, and how much of its height the edge takes. Detailed outlines have little else. */
+/* Edges that are each inside a single pixel, one per lane. Detailed outlines have little else. */
 typedef struct camber_tiny_edges {
-    camber_mask are, row, column;
-    camber_words here, height;
+    camber_mask are;           /* which lanes have such an edge */
+    camber_mask row, column;   /* its pixel in the tile */
+    camber_words here, height; /* in fixed point: how much of the pixel is right of the edge between its ends, and how
+                                * much of the pixel's height is between them */
 } camber_tiny_edges;
 
-/* Finds such edges, given relative to the tile, in the rows of cells that are drawn. None of them begins on the line
- * between two pixels, so they cross no top of a cell. */
+/* Finds such edges, given relative to the tile, in the rows of cells that are drawn. An edge that begins on the border
+ * of two rows of pixels is none of them, so they cross no top of a cell. */
 CAMBER_FN void camber_tiny_edges_of(const camber_ring_edges *e, camber_mask wanted, camber_tile_rows where,
                                     camber_tiny_edges *tiny) {
     const float side = (float)CAMBER_TILE_PX, first = (float)(CAMBER_CELL_PX * where.first),
@@ -560,7 +569,7 @@ CAMBER_FN void camber_tiny_edges_of(const camber_ring_edges *e, camber_mask want
     tiny->height = CAMBER_ROUNDED_WORDS(high);
 }
 
-/* Adds edge k of a vector to its pixel, and to everything right of it. */
+/* Adds tiny edge k of a vector to its pixel, and to everything to the right of it. */
 CAMBER_FN void camber_area_add_tiny(camber_area_state *s, const camber_tiny_edges *tiny, int k,
                                     camber_tile_rows where) {
     const int y = camber_integer_of(&tiny->row, k), x = camber_integer_of(&tiny->column, k);

@@ -291,11 +291,14 @@ CAMBER_NOINLINE void camber_add_ring_edge(camber_tile_state *c, const camber_dra
     camber_area_add(&c->area, &e, 1, d->where);
 }
 
-/* Adds the edges of a bunch, which begins with edge `first`. */
+/* Adds those edges of a bunch whose boxes touch the tile. `first` is the number of its first edge. */
 CAMBER_FN void camber_add_bunch(camber_tile_state *c, const camber_drawn_tile *d, size_t first) {
-    for (size_t which = first; which < first / 16u * 16u + 16u; which++)
-        if (CAMBER_BITS(d->from.edges[camber_edge_brush(which)]) == d->brush)
+    for (size_t which = first; which < first / 16u * 16u + 16u; which++) {
+        CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
+        if (CAMBER_BITS(d->from.edges[camber_edge_brush(which)]) == d->brush &&
+            camber_boxes_touch_tile(ends[0], ends[1], ends[2], ends[3], d->where))
             camber_add_ring_edge(c, d, which);
+    }
 }
 
 /* Draws the polygon whose edges have been added. */

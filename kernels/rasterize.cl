@@ -131,13 +131,13 @@ typedef struct tile_brushes {
 #endif
 } tile_brushes;
 
-/* Queued edges of the current brush: ax, ay, bx, by. A vector is added at once, so there is room for one more. */
+/* Queued edges of the current brush. A whole vector is queued when fifteen may be waiting, so there is room for it. */
 typedef struct edge_batch {
-    float ends[4][SIXTEEN + CAMBER_LANES];
+    float ends[4][SIXTEEN + CAMBER_LANES]; /* ax, ay, bx, by; behind the last edge, any finite numbers */
     uint count;
 } edge_batch;
 
-/* Adds the first sixteen queued edges to the polygon. */
+/* Adds the first sixteen queued edges, or all if they are fewer, to the polygon. */
 static __attribute__((noinline)) void add_edges(camber_tile_state *c, camber_tile_rows where, edge_batch *b) {
     for (uint v = 0; v < CAMBER_VECTORS && CAMBER_LANES * v < b->count; v++) {
         const int left = (int)b->count - (int)(CAMBER_LANES * v), count = left < CAMBER_LANES ? left : CAMBER_LANES;
@@ -182,23 +182,20 @@ static inline void queue_vector(const camber_words *words, camber_mask wanted, e
 #endif
 }
 
-/* Queues those edges of a bunch, which are stored together, that may touch the tile. */
+/* Queues those edges of a bunch whose boxes touch the tile. They are stored together. */
 static __attribute__((noinline)) void queue_bunch(camber_tile_state *c, global const float *edges,
                                                   camber_tile_rows where, size_t first, camber_u32 brush,
                                                   edge_batch *b) {
     global const camber_u32 *ends = (global const camber_u32 *)edges + camber_edge_ends(first / 16 * 16);
     global const camber_u32 *brushes = (global const camber_u32 *)edges + camber_edge_brush(first / 16 * 16);
-    const float right = where.left + CAMBER_TILE_PX, bottom = where.top + CAMBER_TILE_PX;
     for (size_t v = 0; v < CAMBER_VECTORS; v++) {
         camber_words taken[4], words[4];
         for (size_t i = 0; i < 4; i++)
             taken[i] = CAMBER_LOAD(4 * v + i, ends);
         turn_fours_over(taken, words);
-        const camber_real ax = CAMBER_AS_REAL(words[0]), ay = CAMBER_AS_REAL(words[1]), bx = CAMBER_AS_REAL(words[2]),
-                          by = CAMBER_AS_REAL(words[3]);
-        const camber_mask may_touch = ((ax < right) | (bx < right)) & ((ax >= where.left) | (bx >= where.left)) &
-                                      ((ay < bottom) | (by < bottom)) & ((ay >= where.top) | (by >= where.top));
-        queue_vector(words, may_touch & (CAMBER_LOAD(v, brushes) == brush), b);
+        const camber_mask at_tile = camber_boxes_touch_tile(CAMBER_AS_REAL(words[0]), CAMBER_AS_REAL(words[1]),
+                                                            CAMBER_AS_REAL(words[2]), CAMBER_AS_REAL(words[3]), where);
+        queue_vector(words, at_tile & (CAMBER_LOAD(v, brushes) == brush), b);
         if (b->count >= SIXTEEN)
             add_edges(c, where, b);
     }
@@ -303,7 +300,7 @@ CAMBER_KERNEL(1, rasterize,
     camber_tile_state c;
     positions at;
     segment_batch b;
-    edge_batch queued;
+    edge_batch queued = {.count = 0};
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
     const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], spilled = jobs[CAMBER_JOB_WORDS * job + 2],
                      column = (camber_u32)tile % s.columns, row = (camber_u32)tile / s.columns;
@@ -318,7 +315,7 @@ CAMBER_KERNEL(1, rasterize,
         ask_for(segments, edges, s, lists[k - 1]);
     for (camber_u32 k = 0; k < 4 * AHEAD; k += 16)
         ASK_FOR(lists + starts[tile + 2] + k);
-    b.count = queued.count = 0;
+    b.count = 0;
     camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);
 #if CAMBER_RASTER_PITCHED

@@ -324,7 +324,7 @@ CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
     return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
 }
 
-/* ---- Bunchs of edges ---- */
+/* ---- Bunches of edges ---- */
 
 /* A bunch in one word: x and y of its box's first tile, one byte each, then how many tiles follow along each side, in
  * two bits, and which of the sixteen edges is its first. */

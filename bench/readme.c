@@ -93,7 +93,7 @@ static const char *frames_date(const run *r) {
     return *own ? own : bench_text(r->document, "date");
 }
 
-/* What measured fewer scenes and runs is not passed off as a whole run. */
+/* A run with fewer scenes, or fewer frames of each, is not shown as a full one. */
 static const char *size_of(const run *r) {
     return strcmp(bench_text(r->document, "size"), "full") == 0 ? "" : ", not a full run";
 }

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the archive of sources, and of it the wheel: wheel.sh TREE OUT_FOLDER LIBRARIES_FOLDER
+# Builds the archive of sources, and the wheel from it: wheel.sh TREE OUT_FOLDER LIBRARIES_FOLDER
 #
 # Runs as root in a fresh Debian 11, whose C library (2.31) is as old as that of any Linux of the last five years;
 # tests/recipes/recipes.sh makes one, which ./dev wheel calls. Debian 11 has clang 16, which compiles the kernels. Its
-# HarfBuzz, jansson, libdeflate and libmicrohttpd are too old, and its Cairo wants X11: these are built here, of
-# Debian 12's sources, and kept in LIBRARIES_FOLDER for the next time. setuptools, which is Python only, and GDAL's headers are
-# Debian 12's.
+# HarfBuzz, jansson, libdeflate and libmicrohttpd are too old, and its Cairo wants X11: these are built here from
+# Debian 12's sources, and kept in LIBRARIES_FOLDER for the next time. setuptools, which is Python only, and GDAL's
+# headers are Debian 12's.
 set -eux
 tree=$1 out=$2
 prefix=$3/$(sed -n '/^begin()/,/^cd /p' "$0" | sha256sum | cut -c 1-12) # other recipes, other libraries

@@ -324,7 +324,7 @@ typedef struct camber_device_desc {
      * 0: three quarters of the device's memory, or no limit if the device uses the host's memory. */
     uint64_t memory_bytes;
     /* Threads of a CPU with fixed kernels, including the caller's. OpenCL's drivers decide this themselves. 0: one for
-     * each core that the process may use. */
+     * each core that the process may use, but no more than the CPU quota of its control group pays for. */
     uint32_t threads;
     /* The surface whose renderers will draw the device's meshes in GL. Zero: none, so buffers are copied. */
     camber_gl_handles gl;

@@ -206,14 +206,17 @@ def from_each(geometries, dots):
 def from_linestrings(geometries):
     """Converts linestrings of Shapely 1 by GEOS's functions, which is twenty times as fast. None: there is something else
     among them, or GEOS is older than 3.10."""
-    if not len(geometries) or {type(each).__name__ for each in geometries} != {"LineString"}:
+    geometries = list(geometries)  # a sequence may make them as they are asked for, and GEOS frees those that nobody has
+    if not geometries or {type(each).__name__ for each in geometries} != {"LineString"}:
         return None
     geos = importlib.import_module("shapely.geos")
     names = "GEOSGeomTypeId_r", "GEOSGeom_getCoordSeq_r", "GEOSCoordSeq_getSize_r", "GEOSCoordSeq_copyToBuffer_r"
     try:
         functions = [ctypes.cast(getattr(geos._lgeos, name), ctypes.c_void_p).value for name in names]
         handles = numpy.fromiter((each.__geom__ for each in geometries), numpy.uintp, len(geometries))
-    except AttributeError:
+    except (AttributeError, TypeError):
+        return None
+    if not handles.all():
         return None
     calls = ffi.new("camber_python_geos *", [ffi.cast(kind, at) for kind, at in zip(
         (field.type for _, field in ffi.typeof("camber_python_geos").fields), (geos.lgeos.geos_handle, *functions))])

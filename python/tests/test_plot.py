@@ -53,6 +53,20 @@ def test_geometries_all_at_once_are_those_one_by_one():
                 assert numpy.array_equal(a, b)
 
 
+class Fresh:
+    """Geometries that are made whenever they are asked for, and that nobody else keeps."""
+
+    def __init__(self, pieces):
+        self.pieces = pieces
+
+    def __len__(self):
+        return len(self.pieces)
+
+    def __iter__(self):
+        from shapely import wkb
+        return map(wkb.loads, self.pieces)
+
+
 def test_linestrings_by_functions_of_geos():
     shapely = pytest.importorskip("shapely")
     if hasattr(shapely, "get_parts"):
@@ -65,6 +79,9 @@ def test_linestrings_by_functions_of_geos():
         assert (ours.origins == theirs.origins).all() and ours.origin_count == theirs.origin_count
     of_each = from_linestrings([LineString([(0, 0, 1), (1, 2, 1)]), LineString(), LineString([(3, 4), (5, 6)]), LineString()])
     assert of_each.points.tolist() == [[0, 0], [1, 2], [3, 4], [5, 6]] and of_each.offsets.tolist() == [0, 2, 2, 4, 4]
+    made_anew = Fresh([line.wkb for line in lines] * 500)
+    ours, theirs = from_linestrings(made_anew), from_each(made_anew, False)
+    assert (ours.points == theirs.points).all() and (ours.offsets == theirs.offsets).all()
     for other in MultiLineString([LINES[0]]), Polygon([(0, 0), (1, 0), (1, 1)]), None:
         assert from_linestrings([*lines, other]) is None
         assert len(from_geometries([*lines, other])) >= 3

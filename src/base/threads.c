@@ -40,7 +40,8 @@ size_t camber_cores_paid(const char *root) {
     return least;
 }
 
-/* More threads than the quota pays for would stop all of them in the middle of a launch, until the next period. */
+/* With more threads than the quota pays for, the kernel would stop all of them in the middle of a launch, until the
+ * next period. */
 static size_t usable_cores(void) {
     const size_t cores = camber_cores_count(), paid = camber_cores_paid("");
     return cores < paid ? cores : paid;

@@ -21,11 +21,11 @@ typedef struct camber_threads {
 
 /* Returns how many cores the process may use: those of its affinity, which containers and taskset limit. At least 1. */
 size_t camber_cores_count(void);
-/* Returns how many cores the quota of the process's control group, and of the groups above it, pays for (cpu.max, which
- * containers limit); SIZE_MAX: there is none. root is as in control_group.h. */
+/* Returns how many cores the quotas of the process's control group and of the groups above it pay for (cpu.max, which
+ * containers set); SIZE_MAX: there is no quota. root is as in control_group.h. */
 size_t camber_cores_paid(const char *root);
-/* Returns how many threads to use: as many as asked for, or one per core that the process may use if asked is 0. The
- * result is at least 1 and at most CAMBER_MOST_THREADS. */
+/* Returns how many threads to use: as many as asked for, or, if asked is 0, one per core that the process may use and
+ * that its quota pays for. The result is at least 1 and at most CAMBER_MOST_THREADS. */
 size_t camber_threads_count(size_t asked);
 /* Starts count threads, each of which calls work(user, number) and ends when work returns. If the system cannot start
  * that many, fewer run. */

@@ -139,8 +139,8 @@ static int fail_name(camber_session *session, const char *name) {
     for (size_t i = 0; (next = camber_style_list(i)) != NULL; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", next);
     return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
-                              "%s: neither a file nor a built-in style; name a style document, or one of: %s", name,
-                              names);
+                              "%s: neither a file nor a built-in style; name a style document, or one of: %s%s", name,
+                              names, strcmp(name, "dark") == 0 ? "; --theme dark makes it dark" : "");
 }
 
 int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style) {

@@ -273,9 +273,10 @@ static int parse_value(const camber_option_reader *p, const camber_option_spec *
     case CAMBER_OPTION_PLACES: return parse_place(p, text);
     case CAMBER_OPTION_NUMBER: {
         double number;
-        if (!parse_numbers(text, 1, &number) || number < spec->least || number > spec->most)
-            return camber_options_refuse(p, "--%s %s: out of range; give a number from %g to %g", spec->name, text,
-                                         spec->least, spec->most);
+        const bool is_number = parse_numbers(text, 1, &number);
+        if (!is_number || number < spec->least || number > spec->most)
+            return camber_options_refuse(p, "--%s %s: %s; give a number from %g to %g", spec->name, text,
+                                         is_number ? "out of range" : "not a number", spec->least, spec->most);
         *(double *)(void *)field = number;
         return CAMBER_EXIT_DONE;
     }

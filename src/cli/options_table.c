@@ -194,7 +194,7 @@ const camber_option_spec camber_option_specs[] = {
     {"draw", 0, CAMBER_OPTION_CHOICE, RENDER | COMPARE | VALIDATE | BENCH | INFO | PYRAMIDS, FIELD(draw), "auto|gl|cl",
      "draw with GLES shaders, or with OpenCL kernels and no GL (auto)"},
     {"threads", 0, CAMBER_OPTION_COUNT, EVERY | PYRAMIDS, FIELD(threads), "N",
-     "threads for OpenCL and GL on a CPU, for reading PBF and for encoding tiles (one per core)", 1, 1024},
+     "threads for kernels and GL on a CPU, for reading PBF and for encoding tiles (one per core)", 1, 1024},
     {"memory", 0, CAMBER_OPTION_BYTES, READING | PYRAMIDS, FIELD(memory_bytes), "SIZE",
      "memory limit, as in 512M; data that needs more than this, and more than 128M, is refused", 262144,
      1099511627776.0},

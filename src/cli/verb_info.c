@@ -37,10 +37,12 @@ static void add_devices(camber_session *session, json_t *object) {
         json_object_set_new(object, "devices_error", take_error(session->report, status));
 }
 
-/* Adds why no device is OpenCL's, if none is although there are others: it is loaded only when it is asked for. */
+/* Adds why no device is OpenCL's, if that is so: listing the others is no error. */
 static void add_opencl(camber_session *session, json_t *object) {
     const json_t *list = json_object_get(object, "devices"), *entry;
     size_t i;
+    if (json_object_get(object, "devices_error"))
+        return; /* it would be the same error */
     json_array_foreach(list, i, entry) {
         const char *version = json_string_value(json_object_get(entry, "version"));
         if (version && strncmp(version, "OpenCL", strlen("OpenCL")) == 0)
@@ -48,7 +50,7 @@ static void add_opencl(camber_session *session, json_t *object) {
     }
     const camber_device_desc desc = {.match = "opencl"};
     camber_device *device = NULL;
-    const camber_status status = i > 0 ? camber_device_create(session->context, &desc, &device) : CAMBER_OK;
+    const camber_status status = camber_device_create(session->context, &desc, &device);
     camber_device_destroy(device);
     if (status != CAMBER_OK)
         json_object_set_new(object, "opencl_error", take_error(session->report, status));
@@ -110,9 +112,7 @@ static const char *text_of(const json_t *object, const char *key) {
 static void print_formats(const json_t *object) {
     const json_t *list = json_object_get(object, "formats");
     if (json_array_size(list) == 0) {
-        printf("formats   polylines in pixels (%s)\n", json_object_get(object, "gdal")
-                                                           ? "GDAL cannot be loaded; install it, and camber again"
-                                                           : "this build reads no maps");
+        puts("formats   polylines in pixels (this build reads no maps)");
         return;
     }
     size_t column = 100;
@@ -148,7 +148,7 @@ static void print_text(const json_t *object) {
         printf("device    none: %s\n",
                json_object_get(object, "devices_error")
                    ? text_of(object, "devices_error")
-                   : "no device here; install pocl-opencl-icd or a GPU's driver, or build camber where clang is");
+                   : "no device here; install a driver of OpenCL, or build camber where clang is");
     if (json_object_get(object, "opencl_error"))
         printf("OpenCL    not available: %s\n", text_of(object, "opencl_error"));
     json_array_foreach(json_object_get(object, "backends"), i, entry) {
@@ -168,8 +168,10 @@ static void print_text(const json_t *object) {
     else
         printf("sharing   %s, between %s and %s\n", text_of(object, "sharing"), text_of(object, "device"),
                text_of(object, "gl_renderer"));
-    if (json_object_get(object, "gdal"))
-        printf("GDAL      %s\n", text_of(object, "gdal"));
+    const json_t *gdal = json_object_get(object, "gdal");
+    if (gdal)
+        printf("GDAL      %s\n", json_is_null(gdal) ? "none: install it (Debian: gdal-bin) to read more formats"
+                                                    : json_string_value(gdal));
     print_formats(object);
 }
 

@@ -512,6 +512,33 @@ static void tell_failure(void *user, camber_log_level level, const char *message
         fprintf(stderr, "camber: %s\n", message);
 }
 
+/* Reads the icons of --icons, of both densities, so that a mistake in them is told now and not with each request. */
+static int check_icons(camber_session *session) {
+    const camber_context_desc desc = {.log = camber_report_log, .log_user = session->report, .cache_dir = ""};
+    camber_context *context = NULL;
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    json_t *document =
+        json_pack("{s:i, s:s, s:{}, s:[{s:s, s:s, s:{s:s}}]}", "version", 8, "sprite", session->options->icons,
+                  "sources", "layers", "id", "icons", "type", "background", "paint", "background-pattern", "icons");
+    char *text = document ? json_dumps(document, JSON_COMPACT) : NULL;
+    json_decref(document);
+    if (!text)
+        return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT, "--icons: give a path in UTF-8");
+    camber_status status = camber_context_create(&desc, &context);
+    if (status == CAMBER_OK)
+        status = camber_style_parse(context, text, strlen(text), "--icons", &style);
+    if (status == CAMBER_OK)
+        status = camber_features_create(context, style, &features);
+    for (int ratio = 1; ratio <= 2 && status == CAMBER_OK; ratio++)
+        status = camber_features_read_sprites(features, ratio, NULL);
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+    camber_context_destroy(context);
+    free(text);
+    return camber_report_status(session->report, status);
+}
+
 static int listen_there(camber_session *session, const wishes *w, camber_server **server, char url[256]) {
     const camber_options *options = session->options;
     size_t length = options->public_url ? strlen(options->public_url) : 0;
@@ -563,7 +590,7 @@ static int listen_there(camber_session *session, const wishes *w, camber_server 
         return camber_report_fail(session->report, cause == EMFILE ? CAMBER_EXIT_IO : CAMBER_EXIT_INTERNAL,
                                   "serve: %s; %s", strerror(cause),
                                   camber_file_cure(cause, "give it more memory, or threads (ulimit -u)"));
-    return CAMBER_EXIT_DONE;
+    return options->icons ? check_icons(session) : CAMBER_EXIT_DONE;
 }
 
 /* A server that listens on all addresses has clients on other machines, which cannot use 127.0.0.1. */

@@ -82,7 +82,7 @@ int camber_warm(camber_session *session) {
            is_fixed ? "part of the library" : result.folder);
     const int printed = camber_report_flush(session->report);
     if (printed == CAMBER_EXIT_DONE)
-        camber_report_done(session->report, "info", 0, camber_session_elapsed_ms(session),
-                           "%zu of %zu programs compiled", result.built, result.programs);
+        camber_report_done(session->report, "info", 0, camber_session_elapsed_ms(session), "%zu programs ready",
+                           result.programs);
     return printed;
 }

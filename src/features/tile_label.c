@@ -46,7 +46,7 @@ static bool add_edges(chooser *c, const camber_cut_line *line) {
         const double *p = s->points + 2 * i, *q = p + 2;
         for (int axis = 0; axis < 2; axis++) {
             const double side = p[axis] / CAMBER_TILE_UNITS - tile[axis], a = p[1 - axis], b = q[1 - axis];
-            if (p[axis] != q[axis] || (side != 0.0 && side != 1.0))
+            if (p[axis] != q[axis] || a == b || (side != 0.0 && side != 1.0))
                 continue;
             if (!camber_grow(s->context, &c->edges, &c->edge_capacity, c->edge_count + 1, sizeof *c->edges))
                 return false;

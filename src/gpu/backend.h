@@ -20,7 +20,7 @@ typedef struct camber_failed_call {
     const struct camber_gpu_backend *backend;
     const char *name; /* NULL: none failed */
     int code;
-    const char *cure; /* what a back end without drivers lacks, and what to install; NULL: nothing */
+    const char *cure; /* what a back end lacks to find devices, and what to install; NULL: nothing */
 } camber_failed_call;
 
 struct camber_buffer {

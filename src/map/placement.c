@@ -481,9 +481,7 @@ static camber_status place_one(placer *p, camber_label_candidate *c) {
     const camber_label_form *form = p->layout->forms + c->form;
     const camber_label_rule *rule = p->layout->rules + form->rule;
     const camber_symbol *s = &rule->symbol;
-    const bool repeats = s->placement == CAMBER_SYMBOL_LINE && form->text;
-    const double spacing = s->spacing_px * camber_label_whole_zoom_px(p->layout->view);
-    const double near = repeats ? fmax(0.5 * spacing, 0.0) : 0.0;
+    const double near = form->text ? s->repeat_px * camber_label_whole_zoom_px(p->layout->view) : 0.0;
     tried text, icon;
     c->box = CAMBER_BOX_EMPTY;
     p->shape_count = 0;

@@ -154,10 +154,10 @@ static enum MHD_Result send_error(request *r, int status) {
 }
 
 /* Sends a 400 whose text says what is wrong with the request. */
-static enum MHD_Result send_refusal(request *r, const char *reason) {
+static enum MHD_Result send_refusal(request *r, int status, const char *reason) {
     char text[512];
-    const int length = snprintf(text, sizeof text, "400 %s\n", reason);
-    reply a = {.status = 400,
+    const int length = snprintf(text, sizeof text, "%d %s\n", status, reason);
+    reply a = {.status = status,
                .body = camber_body_create(text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1),
                .media_type = "text/plain; charset=utf-8",
                .cache_control = "no-store"};
@@ -371,6 +371,8 @@ static void take_body(request *r, const char *bytes, size_t size) {
     r->posted_bytes += taken;
 }
 
+static const char NO_PICTURES[] = "an archive's tiles are served as they are; /static draws a map, so serve that";
+
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
     const camber_content_view view = look(server, &r->route, NULL);
@@ -382,14 +384,14 @@ static enum MHD_Result answer_drawn(request *r) {
     if (!view.ready || server->stopping)
         return send_error(r, 503);
     if (view.is_archive)
-        return is_tile ? answer_stored(r, &view) : send_error(r, 404);
+        return is_tile ? answer_stored(r, &view) : send_refusal(r, 404, NO_PICTURES);
     if (r->route.type > CAMBER_ROUTE_WEBP || (r->route.dark && !view.has_dark) ||
         (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
         return send_error(r, 404);
     char reason[CAMBER_OVERLAY_REASON_SIZE] = "";
     const int status = is_tile ? 200 : take_overlay(r, reason);
     if (status != 200)
-        return status == 400 ? send_refusal(r, reason) : send_error(r, status);
+        return status == 400 ? send_refusal(r, 400, reason) : send_error(r, status);
     camber_body *body = is_tile ? camber_tile_cache_get(server->cache, camber_draw_queue_key(&r->route)) : NULL;
     return body ? send_tile(r, &view, body) : request_tile(r);
 }
@@ -666,7 +668,7 @@ enum MHD_Result camber_request_answer(void *user, struct MHD_Connection *connect
     if (status == 400 && (listener->is_for_metrics || look(listener->server, &r->route, NULL).is_archive))
         status = 404;
     if (status == 400 && r->route.reason)
-        return send_refusal(r, r->route.reason);
+        return send_refusal(r, 400, r->route.reason);
     return status == 200 ? answer(r) : send_error(r, status);
 }
 

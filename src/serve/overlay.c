@@ -9,6 +9,7 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,8 @@ enum {
     MOST_POINTS = 100000,
     MOST_FEATURES = 10000,
     DEEPEST = 8,
-    MOST_WORDS = 500
+    MOST_WORDS = 500,
+    MOST_ICON_BYTES = 64 << 20
 };
 enum { WORLD_PX = 512, POINT_ZOOM = 16, ARC_POINTS = 32, MOST_ZOOM = CAMBER_ROUTE_MOST_ZOOM };
 
@@ -30,10 +32,13 @@ static const double MOST_WIDTH_PX = 500, MOST_SCALE = 20, MOST_OFFSET_PX = 1000,
 
 struct camber_overlay_icons {
     char *sprite;
-    json_t *names; /* an object whose keys are the icons' names */
+    json_t *names;            /* an object whose keys are the icons' names */
+    size_t sheet_bytes;       /* of the larger picture, decoded */
+    atomic_size_t held_bytes; /* of all overlays that have icons */
 };
 
 struct camber_overlay {
+    camber_overlay_icons *icons; /* NULL: it has none of them */
     camber_context *context;
     camber_style *style;
     camber_features *features;
@@ -60,7 +65,7 @@ typedef struct mark {
 
 typedef struct maker {
     camber_route_request *request;
-    const camber_overlay_icons *icons;
+    camber_overlay_icons *icons;
     char *reason; /* of the first failure */
     bool failed, is_latlng, has_icons;
     camber_context *context;
@@ -425,7 +430,7 @@ static bool read_text(maker *m, const char *value) {
     if (!next_piece(&rest, '|', &p) || !read_position(m, p, position))
         return refuse(m, "it does not begin with %s", name_position(m));
     if (!next_piece(&rest, '|', &look.words) || !look.words.length)
-        return refuse(m, "no words follow its position; give LON,LAT|WORDS");
+        return refuse(m, "no words follow its position; give a bar and the words");
     while (next_piece(&rest, '|', &p))
         if (!split_option(p, &name, &content) ? !refuse(m, "its options have the form NAME:VALUE")
                                               : !read_text_option(m, name, content, &look))
@@ -467,14 +472,12 @@ static bool read_icon(maker *m, piece p, mark *made) {
     made->is_dot = is_word(p, "dot");
     if (made->is_dot || is_word(p, "pin"))
         return true;
-    if (p.length < sizeof name && m->icons) {
-        memcpy(name, p.at, p.length);
-        name[p.length] = 0;
-        made->icon = p;
-        return json_object_get(m->icons->names, name) ||
-               refuse(m, "its icon is neither pin nor dot, nor in the server's sprite");
-    }
-    return refuse(m, "its icon is not one of those that are built in: pin and dot");
+    if (!m->icons)
+        return refuse(m, "its icon is not one of those that are built in: pin and dot");
+    made->icon = p;
+    snprintf(name, sizeof name, "%.*s", (int)(p.length < sizeof name ? p.length : 0), p.at);
+    return json_object_get(m->icons->names, name) ||
+           refuse(m, "its icon is neither pin nor dot, nor in the server's sprite");
 }
 
 static const mark MARK = {.scale = 1, .color = {"#d8382f", 7}};
@@ -526,12 +529,13 @@ static bool read_marker(maker *m, const char *value) {
             continue;
         }
         if (!first)
-            return refuse(m, "its icon is not one of those that are built in: pin and dot");
+            return refuse(m,
+                          "its icon comes first, right after its position; then come scale, offset, color and label");
         if (!read_icon(m, p, &made))
             return false;
     }
     if (made.icon.length && label.length)
-        return refuse(m, "a label is for pin and dot");
+        return refuse(m, "only a pin or a dot has a label");
     if (made.icon.length)
         return add_icon(m, &made);
     made.has_label = label.length > 0;
@@ -840,6 +844,32 @@ static bool add_mark_layers(maker *m, size_t index) {
 
 /* ---- Icons of an operator's own ---- */
 
+/* The bytes of a PNG's pixels by its header. 0: it is none. */
+static size_t measure_sheet(const char *sprite, const char *ending) {
+    char path[4096];
+    uint8_t head[24];
+    snprintf(path, sizeof path, "%.*s%s", (int)(sizeof path - strlen(ending) - 1), sprite, ending);
+    FILE *file = fopen(path, "rb");
+    const bool is_read = file && fread(head, sizeof head, 1, file) == 1;
+    if (file)
+        fclose(file);
+    size_t sides[2] = {0};
+    for (int i = 0; is_read && i < 8; i++)
+        sides[i / 4] = sides[i / 4] << 8 | head[16 + i];
+    return 4 * sides[0] * sides[1];
+}
+
+/* Each overlay with icons decodes the sprite. Returns false if too many of them wait already; one may always. */
+static bool hold_icons(camber_overlay_icons *icons, camber_overlay *overlay) {
+    const size_t held = atomic_fetch_add(&icons->held_bytes, icons->sheet_bytes);
+    if (held && held + icons->sheet_bytes > MOST_ICON_BYTES) {
+        atomic_fetch_sub(&icons->held_bytes, icons->sheet_bytes);
+        return false;
+    }
+    overlay->icons = icons;
+    return true;
+}
+
 int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons) {
     char list[4096], picture[4096];
     if ((size_t)snprintf(list, sizeof list, "%s.json", sprite) >= sizeof list)
@@ -851,6 +881,8 @@ int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons
     if (made && (made->sprite = strdup(sprite)))
         made->names = json_load_file(list, JSON_REJECT_DUPLICATES, NULL);
     if (json_object_size(made ? made->names : NULL)) {
+        const size_t plain = measure_sheet(sprite, ".png"), dense = measure_sheet(sprite, "@2x.png");
+        made->sheet_bytes = plain > dense ? plain : dense;
         *icons = made;
         return 0;
     }
@@ -877,7 +909,9 @@ static bool read_all(maker *m, const camber_overlay_desc *desc, json_t **documen
     return fine && (json_array_extend(m->layers, m->texts) == 0 || refuse(m, "no memory"));
 }
 
-static camber_status read_features(const maker *m, const camber_overlay_desc *desc, camber_overlay *made) {
+/* *is_ours: what fails is the operator's icons, and not the request. */
+static camber_status read_features(const maker *m, const camber_overlay_desc *desc, camber_overlay *made,
+                                   bool *is_ours) {
     const camber_route_request *r = m->request;
     const camber_view_desc view = {.kind = CAMBER_VIEW_CENTER,
                                    .longitude = r->longitude,
@@ -898,10 +932,13 @@ static camber_status read_features(const maker *m, const camber_overlay_desc *de
         status = camber_features_create(made->context, made->style, &made->features);
     if (status == CAMBER_OK && json_array_size(m->texts))
         status = camber_features_read_fonts(made->features, &fonts, NULL);
-    if (status == CAMBER_OK && m->has_icons)
+    *is_ours = status == CAMBER_OK && m->has_icons;
+    if (*is_ours)
         status = camber_features_read_sprites(made->features, r->ratio, NULL);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK) {
+        *is_ours = false;
         status = camber_features_read_sources(made->features, &view, NULL);
+    }
     return status;
 }
 
@@ -930,9 +967,12 @@ int camber_overlay_create(const camber_overlay_desc *desc, camber_route_request 
         m.context = made->context;
         result = read_all(&m, desc, &document) ? 200 : 400;
     }
+    if (result == 200 && m.has_icons && !hold_icons(desc->icons, made))
+        result = 503;
     if (result == 200 && json_array_size(m.layers)) {
-        const camber_status status = read_features(&m, desc, made);
-        result = status == CAMBER_OK ? 200 : status == CAMBER_ERROR_MEMORY ? 500 : 400;
+        bool is_ours = false;
+        const camber_status status = read_features(&m, desc, made, &is_ours);
+        result = status == CAMBER_OK ? 200 : status == CAMBER_ERROR_MEMORY || is_ours ? 500 : 400;
         snprintf(reason, CAMBER_OVERLAY_REASON_SIZE, "the overlay cannot be drawn: %s", camber_status_get_name(status));
     }
     json_decref(document);
@@ -953,6 +993,8 @@ void camber_overlay_destroy(camber_overlay *overlay) {
     camber_features_destroy(overlay->features);
     camber_style_destroy(overlay->style);
     camber_context_destroy(overlay->context);
+    if (overlay->icons)
+        atomic_fetch_sub(&overlay->icons->held_bytes, overlay->icons->sheet_bytes);
     free(overlay);
 }
 

@@ -38,11 +38,12 @@ typedef struct camber_overlay_desc {
     size_t body_size;
     const char *const *fonts; /* font_count folders that are searched before the system's fonts */
     size_t font_count;
-    const camber_overlay_icons *icons; /* NULL: none but those that are built in */
+    camber_overlay_icons *icons; /* NULL: none but those that are built in */
 } camber_overlay_desc;
 
 /* Makes the overlay of a picture, and fits the picture's view: request->view becomes CAMBER_ROUTE_CENTER. *overlay is
- * NULL if nothing is drawn. Returns 200; 400, with a reason; or 500 (no memory). Any thread may call it, and any one
+ * NULL if nothing is drawn. Returns 200; 400, with a reason; 500 (no memory, or the icons cannot
+ * be read); or 503 (too many overlays with icons wait). Any thread may call it, and any one
  * thread at a time may use the result. */
 int camber_overlay_create(const camber_overlay_desc *desc, camber_route_request *request, camber_overlay **overlay,
                           char reason[CAMBER_OVERLAY_REASON_SIZE]);

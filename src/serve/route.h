@@ -96,9 +96,9 @@ const char *camber_route_get_name(camber_route route);
 const char *camber_route_get_media_type(camber_route_type type);
 /* Returns the extension of a type of tiles, without a dot. */
 const char *camber_route_get_ending(camber_route_type type);
-/* Finds the type that has this name in archives. Returns false if no path exists for it. */
-/* Returns the longitude (axis 0) or the latitude, within Web Mercator, of metres of it. */
+/* Returns the longitude (axis 0) or the latitude (axis 1) of metres of Web Mercator. */
 double camber_route_find_degrees(int axis, double metres);
+/* Finds the type that has this name in archives. Returns false if no path exists for it. */
 bool camber_route_find_type(const char *name, camber_route_type *type);
 
 /* Parses a path exactly as it was received, before anything is unescaped. A '?' and what follows it are ignored. The

@@ -3,7 +3,7 @@
 # It draws extracts of OpenStreetMap by their keys, and vector tiles by their layers and classes, for the schemas
 # OpenMapTiles, Protomaps (3 and 4) and Shortbread. Kinds that are drawn lower come first.
 
-set(city_kinds reserve built commerce industry campus field park wood sand rock wetland ice pitch water pier apron plaza)
+set(city_kinds reserve built commerce industry campus farm field park wood sand rock wetland ice pitch water pier apron plaza)
 set(city_keys natural landuse leisure waterway amenity man_made aeroway highway)
 
 set(city_reserve_leisure nature_reserve)
@@ -13,7 +13,8 @@ set(city_industry_landuse industrial railway garages depot port quarry landfill 
 set(city_campus_landuse education institutional religious)
 set(city_campus_amenity school university college kindergarten hospital)
 set(city_field_natural grassland heath scrub fell)
-set(city_field_landuse grass meadow farmland orchard vineyard plant_nursery greenfield)
+set(city_farm_landuse farmland orchard vineyard plant_nursery greenfield)
+set(city_field_landuse grass meadow)
 set(city_park_leisure park garden golf_course common recreation_ground dog_park)
 set(city_park_landuse recreation_ground village_green cemetery allotments)
 set(city_park_amenity grave_yard)
@@ -48,10 +49,13 @@ set(city_tiles_industry_land industrial railway garages quarry landfill brownfie
 set(city_tiles_industry_sites construction)
 set(city_tiles_campus_landuse school university college kindergarten hospital library)
 set(city_tiles_campus_sites school university college hospital)
-set(city_tiles_field_landuse farmland grass meadow grassland scrub)
-set(city_tiles_field_landcover farmland grassland scrub)
+set(city_tiles_farm_landuse farmland)
+set(city_tiles_farm_landcover farmland)
+set(city_tiles_farm_land farmland orchard vineyard plant_nursery greenfield)
+set(city_tiles_field_landuse grass meadow grassland scrub)
+set(city_tiles_field_landcover grassland scrub)
 set(city_tiles_field_natural grass meadow grassland scrub)
-set(city_tiles_field_land farmland grass meadow grassland scrub heath orchard vineyard plant_nursery greenfield)
+set(city_tiles_field_land grass meadow grassland scrub heath)
 set(city_tiles_park_landuse cemetery zoo theme_park park garden golf_course dog_park recreation_ground village_green
     allotments)
 set(city_tiles_park_landcover grass)
@@ -181,7 +185,8 @@ set(city_light_built_far "#e5dacb")
 set(city_light_commerce "#f3e7dd")
 set(city_light_industry "#ebe6de")
 set(city_light_campus   "#f3ead3")
-set(city_light_field    "#e9edd7")
+set(city_light_farm     "#f2ecd2")
+set(city_light_field    "#e3ecce")
 set(city_light_park     "#d5e6bf")
 set(city_light_wood     "#c1d9ad")
 set(city_light_sand     "#f4e7c6")
@@ -193,12 +198,13 @@ set(city_light_water    "#a6cfdd")
 set(city_light_pier     "#efe9dd")
 set(city_light_apron    "#e5e1d9")
 set(city_light_plaza    "#fbf8f1")
-set(city_light_building_far "#e9e3d9")
-set(city_light_building "#e4dcd1")
+set(city_light_building_far "#e1d8cb")
+set(city_light_building "#e0d7cb")
 set(city_light_building_edge "#c6bbad")
 set(city_light_stream   "#9ac7d8")
 set(city_light_rail     "#8b827c")
 set(city_light_border   "#a183a8")
+set(city_light_border_band "#dfd0dd")
 set(city_light_ferry    "#6d9db2")
 set(city_light_runway   "#dcd8d2")
 set(city_light_lift     "#8a8178")
@@ -211,7 +217,8 @@ set(city_dark_built_far "#1b2230")
 set(city_dark_commerce "#181a27")
 set(city_dark_industry "#171a22")
 set(city_dark_campus   "#1a1d24")
-set(city_dark_field    "#141e1e")
+set(city_dark_farm     "#1a1e1d")
+set(city_dark_field    "#14201d")
 set(city_dark_park     "#152620")
 set(city_dark_wood     "#14271f")
 set(city_dark_sand     "#2a271d")
@@ -223,12 +230,13 @@ set(city_dark_water    "#173d58")
 set(city_dark_pier     "#1c222e")
 set(city_dark_apron    "#20262f")
 set(city_dark_plaza    "#1d2431")
-set(city_dark_building_far "#191f2b")
+set(city_dark_building_far "#1e2533")
 set(city_dark_building "#212937")
 set(city_dark_building_edge "#323d50")
 set(city_dark_stream   "#1f4c6b")
 set(city_dark_rail     "#6a6680")
-set(city_dark_border   "#6f6184")
+set(city_dark_border   "#7d6e94")
+set(city_dark_border_band "#2c2a3d")
 set(city_dark_ferry    "#417294")
 set(city_dark_runway   "#2a303b")
 set(city_dark_lift     "#6a7184")
@@ -320,15 +328,28 @@ set(city_template_ties [=[
                    13.9, 0, 14, ["at", ["var", "kind"], ["literal", [2.6, 0, 0, 0]]],
                    16, ["at", ["var", "kind"], ["literal", [4.6, 0, 0, 0]]],
                    20, ["at", ["var", "kind"], ["literal", [15, 0, 0, 0]]]]]}}]=])
+# The borders of countries and regions. The gaps between a country's dashes are paler, and not what is below: above a
+# river both would make one motley line.
 set(city_template_border [=[
+    {"id": "@ID@-band", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@, ["<", @LEVEL@, 3]],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@BORDER_BAND@",
+               "line-width": ["interpolate", ["exponential", 1.2], ["zoom"], 4, 1.4, 8, 2.8, 12, 4, 18, 6]}},
     {"id": "@ID@", "type": "line",@HEAD@
-     "filter": ["all", @NO_AREA@, @TEST@, ["<=", @LEVEL@, 8]],
+     "filter": ["all", @NO_AREA@, @TEST@, ["<", @LEVEL@, 5]],
      "layout": {"line-join": "round", "line-round-limit": 1},
      "paint": {"line-color": "@BORDER@", "line-dasharray": ["step", @LEVEL@, ["literal", [7, 2]], 3, ["literal", [4, 2, 1, 2]]],
                "line-width": ["interpolate", ["exponential", 1.2], ["zoom"],
-                              4, ["step", @LEVEL@, 0.8, 3, 0], 8, ["step", @LEVEL@, 1.7, 3, 0.7, 5, 0],
-                              11.9, ["step", @LEVEL@, 2.2, 3, 1, 5, 0], 12, ["step", @LEVEL@, 2.2, 3, 1, 5, 0.5],
-                              18, ["step", @LEVEL@, 3, 3, 2, 5, 1.3]]}}]=])
+                              4, ["step", @LEVEL@, 0.8, 3, 0], 8, ["step", @LEVEL@, 1.5, 3, 0.7],
+                              12, ["step", @LEVEL@, 1.7, 3, 1], 18, ["step", @LEVEL@, 2.6, 3, 2]]}}]=])
+# The borders of municipalities.
+set(city_template_border_local [=[
+    {"id": "@ID@-local", "type": "line",@HEAD@
+     "filter": ["all", @NO_AREA@, @TEST@, [">=", @LEVEL@, 5], ["<=", @LEVEL@, 8]],
+     "layout": {"line-join": "round", "line-round-limit": 1},
+     "paint": {"line-color": "@BORDER@", "line-dasharray": [4, 2, 1, 2],
+               "line-width": ["interpolate", ["exponential", 1.2], ["zoom"], 11.9, 0, 12, 0.5, 18, 1.3]}}]=])
 set(city_template_ferry [=[
     {"id": "@ID@", "type": "line",@HEAD@
      "filter": ["all", @NO_AREA@, @TEST@],
@@ -432,21 +453,22 @@ macro(city_append_lines out kind)
   endforeach()
 endmacro()
 
-macro(city_append_borders out)
+# Appends borders. template: which ones.
+macro(city_append_borders out template)
   set(NO_AREA "${not_area}")
   set(ID border)
   set(HEAD "")
-  set(TEST "[\"==\", [\"get\", \"boundary\"], \"administrative\"]")
+  set(TEST "[\"all\", [\"==\", [\"get\", \"boundary\"], \"administrative\"],\n                [\"!=\", [\"get\", \"maritime\"], \"yes\"]]")
   set(LEVEL "${city_border_level_osm}")
   if(with_osm)
-    append_layer(${out} "${city_template_border}")
+    append_layer(${out} "${${template}}")
   endif()
   foreach(layer IN LISTS city_borders_tiles)
     set(ID tiles-${layer}-border)
     set(HEAD "${tile_source} \"source-layer\": \"${layer}\",")
     set(TEST "[\"match\", [\"to-string\", [\"get\", \"maritime\"]], [\"1\", \"true\"], false, true]")
     set(LEVEL "${city_border_level_${layer}}")
-    append_layer(${out} "${city_template_border}")
+    append_layer(${out} "${${template}}")
   endforeach()
 endmacro()
 
@@ -465,7 +487,7 @@ function(city_details out theme)
   foreach(kind hedge pier runway ferry)
     city_append_lines(${out} ${kind})
   endforeach()
-  city_append_borders(${out})
+  city_append_borders(${out} city_template_border)
   city_append_lines(${out} works)
 
   foreach(schema IN LISTS city_schemas)
@@ -491,13 +513,14 @@ endfunction()
 # Appends the areas and lines. with_osm: for OpenStreetMap's keys, too, and not only for the layers of tiles.
 # tile_source: members of the layers that draw tiles.
 function(city_layers out theme)
-  foreach(color building building_far building_edge water stream rail border ferry pier runway lift hedge works)
+  foreach(color building building_far building_edge water stream rail border border_band ferry pier runway lift hedge works)
     string(TOUPPER ${color} name)
     set(${name} "${city_${theme}_${color}}")
   endforeach()
   foreach(kind IN LISTS city_kinds)
-    # The middle of a river shows only where there is no area of water.
+    # The middle of a river shows only where there is no area of water, and so does the border of a municipality.
     if(kind STREQUAL "water")
+      city_append_borders(${out} city_template_border_local)
       city_append_rivers(${out})
     endif()
     city_areas(${out} ${theme} ${kind})

@@ -39,8 +39,8 @@ set(label_zoom_country 3)
 set(label_end_quarter 17)
 set(label_end_suburb 16.5)
 set(label_end_town 15.5)
-set(label_end_city 14.5)
-set(label_end_capital 14.5)
+set(label_end_city 15.5)
+set(label_end_capital 15.5)
 set(label_end_country 8)
 
 set(label_size_house 9 10)
@@ -113,9 +113,14 @@ set(label_color_country suburb)
 
 set(label_along "\"symbol-placement\": \"line\", \"text-max-angle\": 40, \"text-padding\": 4,\n                ")
 set(label_layout_stream "${label_along}\"symbol-spacing\": 500, \"text-letter-spacing\": 0.06, ")
-set(label_layout_street_small "${label_along}\"symbol-spacing\": 300, ")
-set(label_layout_street "${label_along}\"symbol-spacing\": 300, ")
-set(label_layout_street_main "${label_along}\"symbol-spacing\": 350, ")
+# Streets have many places for their names, since most are taken by other labels, but are rarely named twice.
+foreach(kind street_small street street_main)
+  set(label_layout_${kind} "${label_along}\"symbol-spacing\": 100, ")
+  set(label_repeat_${kind} 320)
+endforeach()
+string(REPLACE "\"text-max-angle\": 40, \"text-padding\": 4" "\"text-max-angle\": 60, \"text-padding\": 2" label_layout_street_main
+       "${label_layout_street_main}")
+set(label_repeat_halt 100)
 set(label_layout_shield "\"symbol-placement\": \"line\", \"symbol-spacing\": 600, \"text-rotation-alignment\": \"viewport\",
                 \"icon-image\": \"box\", \"icon-text-fit\": \"both\", \"icon-text-fit-padding\": [0, 2.5, 0, 2.5],
                 \"icon-rotation-alignment\": \"viewport\", \"icon-padding\": 30, \"text-letter-spacing\": 0.02, ")
@@ -135,7 +140,8 @@ set(label_beside "\"text-variable-anchor\": [\"top\", \"bottom\", \"left\", \"ri
 set(label_layout_halt "\"text-padding\": 12, \"icon-image\": \"dot\", \"icon-size\": [\"interpolate\", [\"linear\"], [\"zoom\"], 14, 0.5, 18, 0.75],
                 \"text-radial-offset\": 0.55, ${label_beside}")
 # A symbol that says nothing without its name.
-set(label_named_dot "\"icon-image\": \"dot\", \"icon-size\": 0.5, \"text-radial-offset\": 0.5, \"text-padding\": 8,
+set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"name:latin\"], [\"get\", \"FULLNAME\"]]")
+set(label_named_dot "\"icon-image\": [\"case\", [\"to-boolean\", ${label_name}], \"dot\", \"\"], \"icon-size\": 0.5, \"text-radial-offset\": 0.5, \"text-padding\": 8,
                 \"text-variable-anchor\": [\"top\", \"bottom\", \"left\", \"right\"], \"text-justify\": \"auto\", \"text-max-width\": 8, ")
 set(label_layout_sight "${label_named_dot}")
 set(label_layout_shop "${label_named_dot}")
@@ -188,7 +194,6 @@ set(label_dark_shield_text  "#15110b" "#dfb27c" "#c0b69f")
 
 # The texts of kinds whose labels have more than the name, or something else. A road may have several numbers, of which
 # the first is shown.
-set(label_name "[\"coalesce\", [\"get\", \"name\"], [\"get\", \"name:latin\"], [\"get\", \"FULLNAME\"]]")
 set(label_text_house "[\"coalesce\", [\"get\", \"addr:housenumber\"], [\"get\", \"housenumber\"], [\"get\", \"addr_housenumber\"]]")
 set(label_text_peak "[\"case\", [\">\", [\"to-number\", [\"get\", \"ele\"], 0], 0], [\"format\", ${label_name}, {},
                 [\"concat\", \"\\n\", [\"to-string\", [\"round\", [\"to-number\", [\"get\", \"ele\"], 0]]], \" m\"], {\"font-scale\": 0.88}], ${label_name}]")
@@ -220,7 +225,8 @@ match_any(label_is_bay "[\"get\", \"natural\"]" bay strait)
 set(label_osm_lake "[\"any\", ${label_is_bay}, [\"all\", ${label_is_water}, ${label_is_lake}]]")
 match_any(label_osm_sea "[\"get\", \"place\"]" sea ocean)
 match_any(label_osm_peak "[\"get\", \"natural\"]" peak volcano)
-match_any(label_osm_airport "[\"get\", \"aeroway\"]" aerodrome)
+# Airfields without a code are helipads and the like.
+set(label_osm_airport "[\"all\", [\"==\", [\"get\", \"aeroway\"], \"aerodrome\"], [\"has\", \"icao\"]]")
 match_any(label_is_station "[\"get\", \"railway\"]" station halt)
 match_any(label_is_city_rail "[\"get\", \"station\"]" subway light_rail monorail)
 set(label_is_halt "[\"any\", ${label_is_city_rail}, [\"==\", [\"get\", \"subway\"], \"yes\"], [\"==\", [\"get\", \"railway\"], \"halt\"]]")
@@ -404,6 +410,9 @@ macro(label_layer out theme kind id head class)
   set(COLOR "\"${label_${theme}_${label_color_${kind}}}\"")
   if("${kind}" STREQUAL "shop")
     label_groups(COLOR ${theme} "${class}")
+  endif()
+  if(DEFINED label_repeat_${kind})
+    set(END "${END}\n     \"metadata\": {\"camber:repeat\": ${label_repeat_${kind}}},")
   endif()
   set(HALO "${label_${theme}_halo}")
   set(PAINT "")

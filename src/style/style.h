@@ -166,6 +166,7 @@ typedef struct camber_style_layer {
     bool visible;
     camber_overlap overlap;    /* from its metadata, because the specification has no property for it */
     bool plain;                /* from its metadata: draws only features that no other layer draws */
+    double repeat_px;          /* from its metadata: the same words are not shown nearer than that. < 0: not given */
     camber_expression *filter; /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
     camber_layer_ramp ramp, border_ramp;              /* of line-gradient, and of its border if that has no colour */

@@ -413,6 +413,10 @@ camber_status camber_layer_look_symbol(const camber_layer_look *look, const camb
                            "layer \"%.64s\": its labels take too much memory; give it more, or shorten them",
                            look->layer->id);
     resolve(&made);
+    made.symbol.repeat_px = look->layer->repeat_px;
+    if (made.symbol.repeat_px < 0.0)
+        made.symbol.repeat_px =
+            made.symbol.placement == CAMBER_SYMBOL_LINE ? fmax(0.5 * made.symbol.spacing_px, 0.0) : 0.0;
     memcpy(symbol, &made.symbol, sizeof *symbol);
     return CAMBER_OK;
 }

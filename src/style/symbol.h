@@ -74,6 +74,7 @@ typedef struct camber_symbol {
     camber_symbol_placement placement;
     camber_symbol_order order;
     double spacing_px;
+    double repeat_px; /* the same words are not shown nearer than that */
     bool avoid_edges;
     bool has_sort_key;
     double sort_key;

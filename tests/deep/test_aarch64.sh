@@ -13,7 +13,7 @@ debian=$(. /etc/os-release && [ "$ID" = debian ] && echo "$VERSION_CODENAME") ||
 export CAMBER_SYSROOT=$kept/aarch64-$debian
 libraries=(libc6-dev libpng-dev libdeflate-dev libwebp-dev libmicrohttpd-dev libmeshoptimizer-dev liblz4-dev libzstd-dev
     liblzma-dev libjansson-dev libgdal-dev libprotobuf-c-dev libsqlite3-dev zlib1g-dev libharfbuzz-dev libfribidi-dev
-    libfontconfig-dev libcairo2-dev opencl-c-headers libegl-dev libgles-dev libcmocka-dev)
+    libfontconfig-dev libcairo2-dev libcmocka-dev)
 # QEMU runs the unit tests but three that take minutes there, and these, which draw by kernels.
 drawn=(test_{golden,golden_map,polygons,dashes,ramps,paints,circles}_cl)
 kernels=(test_{cpu,stages,tessellate,arc_length,rasterize_areas})

@@ -6,12 +6,10 @@
 
 #include "pictures.h"
 
+#include "gl/egl.h"
 #include "gpu/opencl/cl.h"
 #include "residency/mesh.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <GLES3/gl3.h>
 #include <dirent.h>
 #include <dlfcn.h>
 #include <malloc.h>
@@ -106,14 +104,14 @@ static void find(void *library, const char *name, void *function) {
 
 static bool cycle_egl(void) {
     static void *library;
-    static EGLDisplay display = EGL_NO_DISPLAY;
-    PFNEGLGETPROCADDRESSPROC load;
-    PFNEGLINITIALIZEPROC initialize;
-    PFNEGLBINDAPIPROC bind;
-    PFNEGLCREATECONTEXTPROC create;
-    PFNEGLMAKECURRENTPROC make_current;
-    PFNEGLDESTROYCONTEXTPROC destroy;
-    PFNEGLGETPLATFORMDISPLAYEXTPROC get_display;
+    static EGLDisplay display = NULL;
+    draw_fn *(*load)(const char *);
+    EGLBoolean (*initialize)(EGLDisplay, EGLint *, EGLint *);
+    EGLBoolean (*bind)(EGLenum);
+    EGLContext (*create)(EGLDisplay, EGLConfig, EGLContext, const EGLint *);
+    EGLBoolean (*make_current)(EGLDisplay, EGLSurface, EGLSurface, EGLContext);
+    EGLBoolean (*destroy)(EGLDisplay, EGLContext);
+    camber_egl_get_platform_display_fn *get_display;
     const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3, EGL_NONE};
     library = library ? library : dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library)
@@ -126,17 +124,17 @@ static bool cycle_egl(void) {
     find(library, "eglDestroyContext", &destroy);
     draw_fn *function = load("eglGetPlatformDisplayEXT");
     memcpy(&get_display, &function, sizeof function);
-    if (display == EGL_NO_DISPLAY) {
-        display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+    if (!display) {
+        display = get_display(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL);
         if (!initialize(display, NULL, NULL))
             return false;
     }
     bind(EGL_OPENGL_ES_API);
-    EGLContext context = create(display, NULL, EGL_NO_CONTEXT, wanted);
-    if (context == EGL_NO_CONTEXT || !make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+    EGLContext context = create(display, NULL, NULL, wanted);
+    if (!context || !make_current(display, NULL, NULL, context))
         return false;
     clear(load);
-    make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    make_current(display, NULL, NULL, NULL);
     return destroy(display, context);
 }
 
@@ -172,7 +170,7 @@ static bool cycle_opencl(void) {
     const size_t count = 64;
     cl_platform_id platform;
     cl_device_id id;
-    cl_int code = camber_cl_load() ? camber_cl.GetPlatformIDs(1, &platform, NULL) : CL_DEVICE_NOT_FOUND;
+    cl_int code = camber_cl_load() ? CL_DEVICE_NOT_FOUND : camber_cl.GetPlatformIDs(1, &platform, NULL);
     if (code != CL_SUCCESS || camber_cl.GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, NULL) != CL_SUCCESS)
         return false;
     cl_context context = camber_cl.CreateContext(NULL, 1, &id, NULL, NULL, &code);

@@ -5,8 +5,8 @@
 #include "gpu/opencl/opencl.h"
 #include "pictures.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
+#include "gl/egl.h"
+
 #include <dlfcn.h>
 
 /* ---- The pictures: every kind of pass, in two pieces ---- */
@@ -484,16 +484,16 @@ static void check_terminated(drawn_lines *e) {
     void *library = e->backend == CAMBER_BACKEND_EGL ? dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL) : NULL;
     if (!library || strcmp(e->surface->info.backend, "EGL surfaceless") != 0)
         return;
-    PFNEGLTERMINATEPROC terminate;
-    PFNEGLGETPROCADDRESSPROC load;
-    PFNEGLGETPLATFORMDISPLAYEXTPROC get_display;
+    EGLBoolean (*terminate)(EGLDisplay);
+    camber_function *(*load)(const char *);
+    camber_egl_get_platform_display_fn *get_display;
     void *symbol = dlsym(library, "eglTerminate");
     memcpy(&terminate, &symbol, sizeof symbol);
     symbol = dlsym(library, "eglGetProcAddress");
     memcpy(&load, &symbol, sizeof symbol);
     camber_function *function = load("eglGetPlatformDisplayEXT");
     memcpy(&get_display, &function, sizeof function);
-    assert_true(terminate(get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL)));
+    assert_true(terminate(get_display(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL)));
     assert_told(e, draw(e), CAMBER_ERROR_DEVICE, "cannot be made current");
     put_away_renderer(e);
     camber_surface_destroy(e->surface);

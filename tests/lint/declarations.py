@@ -67,6 +67,10 @@ def main(root, compiler):
         with open(os.path.join(root, path), encoding="utf-8") as file:
             text = file.read()
         lines = list(assertions(text, prefix))
+        rows = len(re.findall(r"^    X\(", text, re.M))
+        if sum("(*)(" in line for line in lines) != rows or not rows:
+            print(f"{path}: not each of {rows} functions is understood")
+            status = 1
         same, said = compiles(compiler, headers, lines)
         if not same:
             print(f"{path}: not what Khronos' headers say:\n" + said)

@@ -70,11 +70,13 @@ typedef struct drawn_by {
 } drawn_by;
 
 static const drawn_by layers[] = {
+    {"tiles-boundary-border-local", "town"},
     {"tiles-waterway-river", "river stream ditch"},
     {"tiles-transportation-pier-line", "pier"},
     {"tiles-aeroway-runway-line", "runway taxiway"},
     {"tiles-transportation-ferry-line", "ferry"},
-    {"tiles-boundary-border", "country disputed state town"},
+    {"tiles-boundary-border-band", "country disputed"},
+    {"tiles-boundary-border", "country disputed state"},
     {"tiles-transportation-works-line", "works"},
     {"tiles-transportation-tunnel-casing", "underpass"},
     {"tiles-transportation-tunnel-fill", "underpass"},

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Traces which libraries the tool loads: no driver unless it is asked for, or needed; and reads its messages where none is here.
-# test_drivers.sh TOOL INPUT CPU, where CPU is 1 if the build has kernels for the processor itself.
+# test_drivers.sh TOOL INPUT CPU [LIBRARY]: CPU is 1 if the build has kernels for the processor itself; LIBRARY has only
+# one function of OpenCL's.
 set -u
-tool=$1 input=$2 has_cpu=$3
+tool=$1 input=$2 has_cpu=$3 part=${4:-}
 unset LD_PRELOAD CAMBER_CPU CAMBER_COMPILATIONS # users do not know of them
 command -v strace >/dev/null && strace -o /dev/null true 2>/dev/null ||
     { echo "skipped: no strace, or it may not look at processes"; exit 77; }
@@ -36,10 +37,15 @@ grep -q 'libcamber' linked || fail "ldd sees no libraries: $(cat linked)"
 
 # ---- Loaded ----
 
-if ls /dev/dri/renderD* /dev/nvidiactl /dev/dxg >/dev/null 2>&1; then
-    echo "a GPU may be here, so drivers are asked: what a run without loads is not looked at"
+gpu=
+for file in /dev/dri/renderD* /dev/{nvidiactl,nvhost-gpu,dxg,mali0,kgsl-3d0,pvrsrvkm,galcore}; do # as src/gpu/hardware.c has them
+    [ ! -r "$file" ] || gpu=$file
+done
+if [ -n "$gpu" ]; then
+    echo "a GPU may be here ($gpu), so drivers are asked: what is loaded without one is not looked at"
 elif [ "$has_cpu" = 1 ]; then
     traced own || fail "does not draw: $(cat own.told)"
+    grep -q 'libcamber' own.trace || fail "the trace names no files"
     ! loads own || fail "drivers are loaded to draw on the processor"
     for threads in 1 2 64; do
         strace -f -qq -e trace=clone,clone3 -o "$threads.clones" "$tool" render "$input" -qfo "$threads.png" --size 256x256 \
@@ -71,6 +77,8 @@ done
 export LD_LIBRARY_PATH=$folder/none${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 opencl='OpenCL is not installed \(libOpenCL\.so\.1\); install ocl-icd-libopencl1 and a driver .*pocl-opencl-icd'
 fails "no device: $opencl" env CAMBER_CPU=none "$tool" render "$input" -fo a.png
+CAMBER_CPU=none "$tool" info >told 2>&1 || fail "info without devices: $(cat told)"
+grep -Eq "^device +none" told && grep -Eq "^OpenCL +not available: no device: $opencl" told || fail "info without devices says $(cat told)"
 if [ "$has_cpu" = 1 ]; then
     "$tool" render "$input" -qfo bare.png --size 256x256 || fail "does not draw without drivers"
     [ ! -f own.png ] || cmp own.png bare.png || fail "other bytes without drivers"
@@ -80,6 +88,10 @@ if [ "$has_cpu" = 1 ]; then
     grep -Eq "^device +camber " told || fail "info names no device: $(cat told)"
     grep -Eq "^OpenCL +not available: .*$opencl" told || fail "info does not say how to get OpenCL: $(cat told)"
     grep -Eq '^GL +egl: not available: .*install libegl1' told || fail "info does not say how to get GL: $(cat told)"
+fi
+if [ -n "$part" ]; then
+    cp "$part" none/libOpenCL.so.1
+    fails 'no device: OpenCL \(libOpenCL\.so\.1\) lacks functions of version 1\.2; install' env CAMBER_CPU=none "$tool" render "$input" -fo a.png
 fi
 [ ! -e a.png ] || fail "a picture is left"
 echo "no drivers are loaded unasked"

@@ -59,9 +59,16 @@ expect 6 "nothing was kept" -O2
 unset CCACHE_READONLY
 export CCACHE_DIR=$work/compiler # no folder
 expect 7 "no place for a cache" -O2
+export CCACHE_DIR=$work/cache
+mkdir bin
+ln -s /bin/false bin/find
+ln -s /bin/false bin/mv
+PATH=$work/bin:$PATH expect 8 "a cache in which another build, or user, is at work" -O2
+expect 9 "nothing was moved there" -O2
+expect 9 "and then it was" -O2
 echo error >source
 if sh "$keep" source object "$work/compiler" -O2; then
     echo "FAILED: a text that does not compile"
     exit 1
 fi
-echo "7 compilations"
+echo "9 compilations"

@@ -134,7 +134,11 @@ def main():
     if len(sys.argv) > 2:
         cases = [([*sys.argv[3:-1], os.path.abspath(sys.argv[-1])], "", sys.argv[2])]
     else:
-        cases = [([tool], level, level) for level in ("x86-64-v3", "x86-64-v2") if level_of([tool], level) == level]
+        cases = [([tool], level, level) for level in ("x86-64-v3", "x86-64-v2")
+                 if level != best and level_of([tool], level) == level]
+        if not cases:
+            print(f"skipped: {best} is the only level of kernels that this processor has")
+            sys.exit(77)
     same = True
     with tempfile.TemporaryDirectory(prefix="camber-processors-") as folder:
         os.chdir(folder)

@@ -8,6 +8,7 @@ standard library alone; strace where it is there. Exit status 1: the first failu
 server.
 """
 
+import concurrent.futures
 import gzip
 import http.client
 import json
@@ -224,6 +225,18 @@ def write_sprite(name, width, height, rgba):
         json.dump({"flag.png": {"x": 0, "y": 0, "width": width, "height": height, "pixelRatio": 1}}, file)
 
 
+def check_large_sprite():
+    """One picture with icons of a sprite that decodes to 64 MB is drawn, and of several at once some are told to come again."""
+    write_sprite("icons/large", 4096, 4096, (*GREEN, 255))
+    server = Server("map.json", "--icons", "icons/large")
+    path = "/static/0.5,40.5,8/400x400.png" + overlay(("marker", "0.5,40.5|flag.png|scale:0.1"))
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        found = sorted(pool.map(lambda _: server.get(path)[0], range(8)))
+    expect(found[0] == 200 and set(found) <= {200, 503}, f"a large sprite: {found}")
+    wait_until(lambda: server.get(path)[0] == 200, "a large sprite afterwards, once the answers before are sent")
+    server.stop()
+
+
 def test_icons():
     """A marker may be an icon of the operator's sprite: it stands on its point, and is scaled."""
     write_map("map.json")
@@ -244,17 +257,26 @@ def test_icons():
     both = decode(server.get(view + overlay(("marker", "0.5,40.5|flag.png"), ("marker", "0.2,40.5|pin|color:blue|label:A")))[2])
     expect(is_color(both, 200, 185, GREEN) and both != plain, "an icon beside a pin")
     for value, words in (("0.5,40.5|flag", b"nor in the server's sprite"), ("0.5,40.5|../flag.png", b"sprite"),
-                         ("0.5,40.5|flag.png|label:A", b"a label is for"), ("0.5,40.5|" + "x" * 99, b"pin and dot")):
+                         ("0.5,40.5|flag.png|label:A", b"only a pin or a dot"), ("0.5,40.5|" + "x" * 99, b"nor in the server's sprite"),
+                         ("0.5,40.5|flag.png|pin", b"its icon comes first"), ("0.5,40.5|flag.png|scale:21", b"0.1 to 20")):
         status, _, body = server.get(view + overlay(("marker", value)))
         expect(status == 400 and words in body, f"{value}: {status} {body}")
+    check_large_sprite()
+    os.rename("icons/sprite.png", "icons/gone.png")
+    expect(server.get(view + overlay(("marker", "0.5,40.5|flag.png")))[0] == 500, "a sprite that is gone is not the client's fault")
+    expect(server.get(view + overlay(("marker", "0.5,40.5|pin")))[0] == 200, "and a pin does not need it")
+    os.rename("icons/gone.png", "icons/sprite.png")
     server.stop()
-    for name, words in (("none", "No such file"), ("map", "No such file"), ("empty", "lists no icons")):
-        with open("empty.json", "w", encoding="utf-8") as file:
-            file.write("[]")
-        shutil.copy("icons/sprite.png", "empty.png")
+    for name, text in (("empty", "[]"), ("odd", '{"flag.png": {"x": -1}}'), ("dense", "{}"), ("dense@2x", "[]")):
+        with open(name + ".json", "w", encoding="utf-8") as file:
+            file.write(text)
+        shutil.copy("icons/sprite.png", name + ".png")
+    shutil.copy("icons/sprite.json", "dense.json")
+    for name, words in (("none", "No such file"), ("map", "No such file"), ("empty", "lists no icons"), ("odd", "odd.json: /flag.png"),
+                        ("dense", "dense@2x.json")):
         done = subprocess.run([TOOL, "serve", "map.json", "--listen", "127.0.0.1:0", "--icons", name], capture_output=True, text=True,
                               check=False)
-        expect(done.returncode == 66 and words in done.stderr, f"--icons {name}: {done.returncode} {done.stderr}")
+        expect(done.returncode in (65, 66) and words in done.stderr, f"--icons {name}: {done.returncode} {done.stderr}")
 
 
 def test_preflight():
@@ -297,7 +319,7 @@ def test_overlay_errors():
             ("path", "fill:|1,2|3,4", "fill"), ("path", "color:red|1,2|3,4", "its options"), ("path", "enc:~~~~~~~~~~", "encoded"),
             ("path", "enc:_p~iF", "half a point"), ("path", "enc:\x01", "encoded"), ("path", "1,2|3,4" + "|5,6" * 900, None),
             ("marker", "1", "LON,LAT"), ("marker", "1,2|x.png", "pin and dot"), ("marker", "1,2|pin|scale:0", "scale"),
-            ("marker", "1,2|pin|offset:1", "offset"), ("marker", "1,2|pin|dot", "pin and dot"), ("marker", "1,2|pin|x:1", "options"),
+            ("marker", "1,2|pin|offset:1", "offset"), ("marker", "1,2|pin|dot", "its icon comes first"), ("marker", "1,2|pin|x:1", "options"),
             ("text", "1,2", "no words"), ("text", "1,2|", "no words"), ("text", "1,2|x|size:1e9", "size"), ("text", "1,2|x|y", "NAME:VALUE"),
             ("text", "1,2|x|anchor:up", "anchor"), ("text", "1,2|" + "x" * 501, "500 bytes"), ("linecap", "flat", "linecap"),
             ("linejoin", "x", "linejoin"), ("padding", "-1", "padding"), ("maxzoom", "25", "maxzoom"), ("stroke", "nocolour", "stroke")):

@@ -321,6 +321,39 @@ static void test_max_angle(void **state) {
     }
 }
 
+#define REPEATED(id, layout, px)                                                                                       \
+    "{\"id\":\"" id "\",\"type\":\"symbol\",\"metadata\":{\"camber:repeat\":" #px "},\"layout\":{\"text-field\":["     \
+    "\"get\",\"name\"]," layout "}}"
+
+/* The distance between labels of the same words, along lines and of points, when the metadata gives it. A name whose
+ * first places are taken moves on by the spacing. */
+static void test_repeat(void **state) {
+    (void)state;
+    const double px[] = {50.0, 500.0, 1000.0, 500.0}, point[] = {300.0, 200.0}, other[] = {480.0, 200.0};
+    town *t = open_town(REPEATED("names", ALONG ",\"symbol-spacing\":100", 400));
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "Road", px, 2);
+    camber_labels labels = place(t);
+    assert_int_equal(labels.label_count, 2); /* of nine places */
+    for (size_t i = 0; i < labels.label_count; i++)
+        for (size_t k = 0; k < i; k++)
+            assert_true(fabs(labels.labels[i].box.x0 - labels.labels[k].box.x0) > 399.0);
+    camber_labels_free(&labels);
+    close_town(t);
+    static const struct {
+        const char *layer;
+        size_t count;
+    } cases[] = {{NAMES("names", "\"text-size\":20"), 2},
+                 {REPEATED("names", "\"text-size\":20", 170), 2},
+                 {REPEATED("names", "\"text-size\":20", 190), 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        t = open_town(cases[i].layer);
+        add_feature(t, CAMBER_GEOMETRY_LABEL_POINT, "Stop", point, 1);
+        add_feature(t, CAMBER_GEOMETRY_LABEL_POINT, "Stop", other, 1);
+        expect_count(t, cases[i].count);
+        close_town(t);
+    }
+}
+
 static void test_line_spacing(void **state) {
     (void)state;
     const double px[] = {50.0, 500.0, 1000.0, 500.0}, near[] = {50.0, 540.0, 1000.0, 540.0};
@@ -766,6 +799,7 @@ int main(void) {
         cmocka_unit_test(test_line),
         cmocka_unit_test(test_max_angle),
         cmocka_unit_test(test_line_spacing),
+        cmocka_unit_test(test_repeat),
         cmocka_unit_test(test_line_does_not_depend_on_view),
         cmocka_unit_test(test_line_does_not_depend_on_zoom),
         cmocka_unit_test(test_icon),

@@ -130,8 +130,12 @@ static void test_quota(void **state) {
     assert_int_equal(camber_cores_paid(root), 4);
     write_in(root, "sys/fs/cgroup/app/cpu.max", "50000 100000\n");
     assert_int_equal(camber_cores_paid(root), 1);
-    write_in(root, "sys/fs/cgroup/app/cpu.max", "no quota\n");
-    assert_int_equal(camber_cores_paid(root), 4);
+    static const char *const others[] = {"no quota\n", "",        "0 100000\n",
+                                         "50000 0\n",  "50000\n", "99999999999999999999999999 1\n"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        write_in(root, "sys/fs/cgroup/app/cpu.max", others[i]);
+        assert_int_equal(camber_cores_paid(root), 4);
+    }
     write_in(root, "proc/self/cgroup", "0::/\n"); /* as inside of a container */
     write_in(root, "sys/fs/cgroup/cpu.max", "200000 100000\n");
     assert_int_equal(camber_cores_paid(root), 2);

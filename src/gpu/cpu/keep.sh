@@ -20,8 +20,8 @@ if cp "$kept" "$object" 2>/dev/null; then
 fi
 "$@" -c "$source" -o "$object"
 
-# Another build may do the same now, and this one may have no right to: then the object is not kept.
+# Other builds may do the same now, and this one may have no right to: a build does not fail because nothing is kept.
 umask "${CCACHE_UMASK:-$(umask)}"
 [ -z "${CCACHE_READONLY:-}" ] && mkdir -p "$folder" 2>/dev/null && cp "$object" "$kept.$$" 2>/dev/null || exit 0
-mv "$kept.$$" "$kept"
-find "$folder" -name '*.o*' -mtime +14 -delete
+mv "$kept.$$" "$kept" 2>/dev/null || true
+find "$folder" -name '*.o*' -mtime +14 -delete 2>/dev/null || true

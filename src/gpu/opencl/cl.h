@@ -147,8 +147,8 @@ typedef struct camber_cl_table {
 /* One for the process, because its OpenCL is; camber_cl_load fills it. */
 extern camber_cl_table camber_cl;
 
-/* Loads the library, if that has not been done. Returns false if there is none. find.c calls it, under its lock, before
- * any other use of OpenCL. */
-bool camber_cl_load(void);
+/* Loads the library, if that has not been done. Returns NULL, or what is missing and what to install. find.c calls it,
+ * under its lock, before any other use of OpenCL. */
+const char *camber_cl_load(void);
 
 #endif

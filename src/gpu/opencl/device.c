@@ -97,11 +97,9 @@ static size_t find(camber_context *context, camber_found_device *found, size_t c
     cl_uint platform_count = 0;
     size_t count = 0;
     (void)context;
-    if (!camber_cl_load()) {
-        failed->cure = "OpenCL is not installed (libOpenCL.so.1); install ocl-icd-libopencl1 and a driver (Debian, for "
-                       "CPUs: pocl-opencl-icd)";
+    failed->cure = camber_cl_load();
+    if (failed->cure)
         return 0;
-    }
     failed->cure = "no OpenCL platform answers; install a driver (Debian, for CPUs: pocl-opencl-icd), and let "
                    "POCL_CACHE_DIR name a folder that PoCL can write to";
     const cl_int code = camber_cl.GetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);

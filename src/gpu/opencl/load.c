@@ -1,5 +1,5 @@
-/* Loads OpenCL when a device of its is first asked for. What the process has already is used first: the OpenCL of a
- * program that links it, or of a tool that comes before it, such as oclgrind. */
+/* Loads OpenCL when it is first asked for devices. Functions that the process already has are used first: those of a
+ * program that links OpenCL, or of a tool that is loaded before it, such as oclgrind. */
 #include "gpu/opencl/cl.h"
 
 #include <dlfcn.h>
@@ -16,10 +16,10 @@ static bool find(void *process, void *library, const char *name, void *function)
     return symbol != NULL;
 }
 
-bool camber_cl_load(void) {
-    static bool loaded; /* by the lock of the caller */
+const char *camber_cl_load(void) {
+    static bool loaded; /* guarded by the lock of the caller */
     if (loaded)
-        return true;
+        return NULL;
     camber_cl_table found = {.shares_gl = true};
     void *process = dlopen(NULL, RTLD_NOW | RTLD_LOCAL);
     /* It stays loaded, because drivers' threads may still be running in it. */
@@ -34,5 +34,8 @@ bool camber_cl_load(void) {
 #undef FIND
     if (loaded)
         camber_cl = found;
-    return loaded;
+    return loaded    ? NULL
+           : library ? "OpenCL (libOpenCL.so.1) lacks functions of version 1.2; install ocl-icd-libopencl1"
+                     : "OpenCL is not installed (libOpenCL.so.1); install ocl-icd-libopencl1 and a driver (Debian, for "
+                       "CPUs: pocl-opencl-icd)";
 }

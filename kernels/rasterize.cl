@@ -133,7 +133,7 @@ typedef struct tile_brushes {
 
 /* Queued edges of the current brush. A whole vector is queued when fifteen may be waiting, so there is room for it. */
 typedef struct edge_batch {
-    float ends[4][SIXTEEN + CAMBER_LANES]; /* ax, ay, bx, by; behind the last edge, any finite numbers */
+    float ends[4][SIXTEEN + CAMBER_LANES]; /* ax, ay, bx, by; behind the last edge, anything */
     uint count;
 } edge_batch;
 
@@ -300,7 +300,7 @@ CAMBER_KERNEL(1, rasterize,
     camber_tile_state c;
     positions at;
     segment_batch b;
-    edge_batch queued = {.count = 0};
+    edge_batch queued;
     const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
     const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], spilled = jobs[CAMBER_JOB_WORDS * job + 2],
                      column = (camber_u32)tile % s.columns, row = (camber_u32)tile / s.columns;
@@ -315,7 +315,7 @@ CAMBER_KERNEL(1, rasterize,
         ask_for(segments, edges, s, lists[k - 1]);
     for (camber_u32 k = 0; k < 4 * AHEAD; k += 16)
         ASK_FOR(lists + starts[tile + 2] + k);
-    b.count = 0;
+    b.count = queued.count = 0;
     camber_tile_begin(&c, own, brushes);
     begin_positions(&at, left, top);
 #if CAMBER_RASTER_PITCHED

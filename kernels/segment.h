@@ -341,7 +341,7 @@ CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
  * these lists instead. Returns the bunch, or CAMBER_NO_BUNCH. */
 CAMBER_FN camber_u32 camber_bunch_of(CAMBER_GLOBAL const camber_u32 *boxes, CAMBER_GLOBAL const camber_u32 *brushes) {
     camber_u32 x0 = 255u, y0 = 255u, x1 = 0u, y1 = 0u, entries = 0u, first = 16u, least = CAMBER_NO_EDGE, most = 0u;
-#ifdef CAMBER_DEVICE
+#ifdef CAMBER_AHEAD_OF_TIME /* Oclgrind knows no reductions of vectors */
 #pragma clang loop vectorize_width(16)
 #endif
     for (camber_u32 k = 0u; k < 16u; k++) {

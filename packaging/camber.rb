@@ -1,6 +1,6 @@
 # Homebrew's formula of camber, for Linux. tests/lint/lint_tree.py holds version and libraries to CMake's.
 class Camber < Formula
-  desc "Line renderer for maps: OpenCL tessellates, exact pixels"
+  desc "Line renderer for maps: kernels in parallel, exact pixels"
   homepage "https://camber.example.org/"
   url "https://camber.example.org/camber-0.1.0.tar.gz"
   sha256 "0000000000000000000000000000000000000000000000000000000000000000" # of the release's archive

@@ -192,7 +192,7 @@ const camber_option_spec camber_option_specs[] = {
     {"sharing", 0, CAMBER_OPTION_CHOICE, RENDER | COMPARE | BENCH | INFO | PYRAMIDS, FIELD(sharing),
      "auto|gl|zero-copy|copy", "how OpenCL passes its buffers to GL (auto)"},
     {"draw", 0, CAMBER_OPTION_CHOICE, RENDER | COMPARE | VALIDATE | BENCH | INFO | PYRAMIDS, FIELD(draw), "auto|gl|cl",
-     "draw with GLES shaders, or with OpenCL kernels and no GL (auto)"},
+     "draw with GLES shaders, or with kernels alone and no GL (auto)"},
     {"threads", 0, CAMBER_OPTION_COUNT, EVERY | PYRAMIDS, FIELD(threads), "N",
      "threads for kernels and GL on a CPU, for reading PBF and for encoding tiles (one per core)", 1, 1024},
     {"memory", 0, CAMBER_OPTION_BYTES, READING | PYRAMIDS, FIELD(memory_bytes), "SIZE",

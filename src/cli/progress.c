@@ -12,7 +12,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-enum { BAR_CELLS = 30, LINE_SIZE = 256, COLUMNS_UNKNOWN = 80 };
+enum { BAR_CELLS = 30, LEAST_BAR_CELLS = 10, LINE_SIZE = 256, COLUMNS_UNKNOWN = 80 };
 static const double SHOW_EVERY_MS = 50, MARK_EVERY_MS = 10e3, MEASURED_MS = 1e3;
 
 /* ---- Rates ---- */
@@ -45,18 +45,21 @@ typedef struct parts {
     char bar[BAR_CELLS + 16], percent[16], count[96], rate[48], left[32];
 } parts;
 
+static void fill_bar(double fraction, int width, parts *made) {
+    char cells[BAR_CELLS + 1];
+    memset(cells, ' ', (size_t)width);
+    memset(cells, '#', (size_t)(fraction * width));
+    cells[width] = 0;
+    snprintf(made->bar, sizeof made->bar, " [%s]", cells);
+}
+
 static void fill_parts(const camber_progress_bar *bar, const camber_progress_info *progress, double now_ms,
                        parts *made) {
     const double fraction = progress->fraction < 1 ? progress->fraction : 1;
     const double elapsed_ms = now_ms - bar->older.ms, gained = fraction - bar->older.fraction;
     *made = (parts){.bar = ""};
     if (fraction >= 0) {
-        char cells[BAR_CELLS + 1];
-        const int full = (int)(fraction * BAR_CELLS);
-        memset(cells, ' ', BAR_CELLS);
-        memset(cells, '#', (size_t)full);
-        cells[BAR_CELLS] = 0;
-        snprintf(made->bar, sizeof made->bar, " [%s]", cells);
+        fill_bar(fraction, BAR_CELLS, made);
         snprintf(made->percent, sizeof made->percent, " %3d %%", (int)(fraction * 100));
     }
     if (progress->unit && progress->total > 1)
@@ -77,7 +80,7 @@ static void fill_parts(const camber_progress_bar *bar, const camber_progress_inf
     }
 }
 
-/* Leaves out parts until the line fits, the least important first. */
+/* Writes a shorter bar, and leaves out parts, until the line fits, the least important first. */
 void camber_progress_write(camber_progress_bar *bar, const camber_progress_info *progress, double now_ms,
                            size_t columns, char *line, size_t size) {
     parts made;
@@ -85,12 +88,16 @@ void camber_progress_write(camber_progress_bar *bar, const camber_progress_info 
     fill_parts(bar, progress, now_ms, &made);
     char *const least[] = {made.rate, made.bar, made.count, made.left, made.percent};
     const bool unknown = !made.percent[0] && !made.count[0];
-    for (size_t i = 0;; i++) {
+    int cells = BAR_CELLS;
+    for (size_t i = 0;;) {
         const int length = snprintf(line, size, "%-15s%s%s%s%s%s%s", bar->stage, made.bar, made.percent, made.count,
                                     made.rate, made.left, unknown ? " ..." : "");
         if (i == sizeof least / sizeof *least || (size_t)length < columns)
             break;
-        least[i][0] = 0;
+        if (made.bar[0] && cells > LEAST_BAR_CELLS)
+            fill_bar(progress->fraction < 1 ? progress->fraction : 1, --cells, &made);
+        else
+            least[i++][0] = 0;
     }
     if (columns > 0 && columns <= size && strlen(line) >= columns)
         line[columns - 1] = 0;

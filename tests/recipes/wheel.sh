@@ -43,13 +43,17 @@ use() { # TREE
     camber info | tee info
     grep 'kernels compiled ahead' info
     draw camber "$tree" "$PWD/drawn"
-    camber render "$tree/tests/data/monaco/monaco.osm.pbf" --paper A5 -o monaco.pdf && head -c 4 monaco.pdf | grep PDF
-    camber tessellate streets.geojson -o streets.glb && test -s streets.glb
-    camber tiles "$tree/tests/data/monaco/monaco.osm.pbf" --max-zoom 9 -o monaco.pmtiles && camber tiles verify monaco.pmtiles
+    camber render "$tree/tests/data/monaco/monaco.osm.pbf" --paper A5 -o monaco.pdf
+    head -c 4 monaco.pdf | grep PDF
+    camber tessellate streets.geojson --style roads -o streets.glb # areas need GLU, which needs GL
+    test -s streets.glb
+    camber tiles "$tree/tests/data/monaco/monaco.osm.pbf" --max-zoom 9 -o monaco.pmtiles
+    camber tiles verify monaco.pmtiles
     # GDAL is not here: what it alone reads is refused, by name, and with what to do.
     echo '<gpx/>' >track.gpx
     camber render track.gpx -o track.png 2>log || status=$?
-    test "$status" = 74 && grep 'camber: track.gpx: .*none of libgdal.so.32 to libgdal.so.40 can be loaded; install it' log
+    test "$status" = 74
+    grep 'camber: track.gpx: .*none of libgdal.so.32 to libgdal.so.40 can be loaded; install it' log
     python - "$tree" <<'PYTHON'
 import sys, numpy, camber
 t = numpy.linspace(0, 1, 200)
@@ -70,7 +74,8 @@ gdal() {
 <gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg><trkpt lon="7.41" lat="43.73"/>
 <trkpt lon="7.42" lat="43.735"/></trkseg></trk></gpx>
 GPX
-    camber render track.gpx -o track.png && od -An -c -N4 track.png | grep 'P   N   G'
+    camber render track.gpx -o track.png
+    od -An -c -N4 track.png | grep 'P   N   G'
     camber info | grep 'GDAL  *GDAL 3'
 }
 

@@ -43,6 +43,7 @@ static void test_narrow(void **state) {
         assert_true(strlen(line) < columns);
         assert_true(columns < 36 || strstr(line, "0:09 left"));
         assert_true(columns < 60 || strstr(line, "1,800 of 3,600 tiles"));
+        assert_true(columns < 80 || (strchr(line, '[') && strstr(line, "200/s")));
     }
 }
 

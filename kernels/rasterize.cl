@@ -146,7 +146,7 @@ static __attribute__((noinline)) void add_edges(camber_tile_state *c, camber_til
                              CAMBER_LOAD(v, b->ends[3]), &e);
         camber_area_add(&c->area, &e, count, where);
     }
-    b->count = b->count > SIXTEEN ? b->count - SIXTEEN : 0;
+    b->count = b->count / SIXTEEN * (b->count % SIXTEEN); /* not as a difference: Oclgrind knows none that saturates */
     for (uint i = 0; i < 4 && b->count != 0; i++)
         CAMBER_STORE(CAMBER_LOAD(0, b->ends[i] + SIXTEEN), 0, b->ends[i]);
 }

@@ -243,6 +243,14 @@ CAMBER_FN void camber_cut_at_left(camber_tile_edges *t, camber_mask enters, camb
     e->y1 = leaves ? y : e->y1;
 }
 
+/* Returns which edges from A to B have boxes that touch a tile. */
+CAMBER_FN camber_mask camber_boxes_touch_tile(camber_real ax, camber_real ay, camber_real bx, camber_real by,
+                                              camber_tile_rows where) {
+    const float left = where.left, top = where.top, right = left + CAMBER_TILE_PX, bottom = top + CAMBER_TILE_PX;
+    return ((ax < right) | (bx < right)) & ((ax >= left) | (bx >= left)) & ((ay < bottom) | (by < bottom)) &
+           ((ay >= top) | (by >= top));
+}
+
 /* Computes the wanted edges relative to a tile, or to those rows of its cells that are drawn. */
 CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask wanted, camber_tile_rows where,
                                     camber_tile_edges *t) {
@@ -265,7 +273,8 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     t->rise = t->aside > CAMBER_AREA_UPRIGHT ? 0.5f * t->down / t->aside : CAMBER_REAL(0.0f);
     t->flat = passes & ~covers;
     const camber_mask from = camber_cell_at(e->x0, t->flat, cells), to = camber_cell_at(e->x1, t->flat, cells);
-    t->matters = covers | (t->turn != 0.0f) | (from != to);
+    const camber_real low = e->y1 < side ? e->x1 : e->x0 + (side - e->y0) * t->slope;
+    t->matters = (covers & ((e->x0 < side) | (low < side))) | (t->turn != 0.0f) | (from != to);
     const camber_mask top = camber_cell_at(e->y0, covers, cells), bottom = camber_cell_at(e->y1, covers, cells);
     const camber_mask above = e->y0 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(top) ? top + 1 : top;
     const camber_mask below = e->y1 > (float)CAMBER_CELL_PX * CAMBER_TO_REAL(bottom) ? bottom : bottom - 1;
@@ -529,22 +538,103 @@ CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *
     }
 }
 
+/* ---- Edges inside a pixel ---- */
+
+/* Edges that are each inside a single pixel, one per lane. Detailed outlines have little else. */
+typedef struct camber_tiny_edges {
+    camber_mask are;           /* which lanes have such an edge */
+    camber_mask row, column;   /* its pixel in the tile */
+    camber_words here, height; /* in fixed point: how much of the pixel is right of the edge between its ends, and how
+                                * much of the pixel's height is between them */
+} camber_tiny_edges;
+
+/* Finds such edges, given relative to the tile, in the rows of cells that are drawn. An edge that begins on the border
+ * of two rows of pixels is none of them, so they cross no top of a cell. */
+CAMBER_FN void camber_tiny_edges_of(const camber_ring_edges *e, camber_mask wanted, camber_tile_rows where,
+                                    camber_tiny_edges *tiny) {
+    const float side = (float)CAMBER_TILE_PX, first = (float)(CAMBER_CELL_PX * where.first),
+                end = (float)(CAMBER_CELL_PX * (where.last + 1));
+    const camber_real none = CAMBER_REAL(0.0f), height = e->y1 - e->y0, middle = 0.5f * (e->x0 + e->x1);
+    const camber_mask inside = wanted & (e->y0 > first) & (e->y1 < end) & (e->x0 >= 0.0f) & (e->x1 >= 0.0f) &
+                               (e->x0 < side) & (e->x1 < side) & (height > CAMBER_AREA_FLAT_PX);
+    const camber_real x0 = inside ? e->x0 : none, x1 = inside ? e->x1 : none;
+    const camber_real y0 = inside ? e->y0 : none, y1 = inside ? e->y1 : none;
+    tiny->row = CAMBER_TO_INTEGERS(y0);
+    tiny->column = CAMBER_TO_INTEGERS(x0);
+    tiny->are = inside & (CAMBER_TO_INTEGERS(x1) == tiny->column) & (CAMBER_TO_INTEGERS(y1) == tiny->row) &
+                (y0 > CAMBER_TO_REAL(tiny->row));
+    const camber_real high = (inside ? height : none) * (float)CAMBER_AREA_ONE * e->down;
+    const camber_real right = CAMBER_TO_REAL(tiny->column) + 1.0f - (inside ? middle : none);
+    tiny->here = CAMBER_ROUNDED_WORDS(high * right);
+    tiny->height = CAMBER_ROUNDED_WORDS(high);
+}
+
+/* Adds tiny edge k of a vector to its pixel, and to everything to the right of it. */
+CAMBER_FN void camber_area_add_tiny(camber_area_state *s, const camber_tiny_edges *tiny, int k,
+                                    camber_tile_rows where) {
+    const int y = camber_integer_of(&tiny->row, k), x = camber_integer_of(&tiny->column, k);
+    const int row = y / CAMBER_CELL_PX, column = x / CAMBER_CELL_PX, first = y % CAMBER_CELL_PX * CAMBER_CELL_PX;
+    const int on = CAMBER_MORE(column + 1, CAMBER_FIRST_COLUMN(where));
+    const camber_u32 here = ((const camber_u32 *)&tiny->here)[k], height = ((const camber_u32 *)&tiny->height)[k];
+    camber_area_take_row(s, row);
+    s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row + column);
+    if (on <= CAMBER_LAST_COLUMN(where) + 1) {
+        camber_u32 *to = (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON];
+        for (int i = 0; i < CAMBER_CELL_PX; i++)
+            to[first + i] += height;
+    }
+    if (column >= CAMBER_FIRST_COLUMN(where) && column <= CAMBER_LAST_COLUMN(where)) {
+        camber_u32 *to =
+            (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(column, where)][CAMBER_AREA_HERE];
+        for (int i = 0; i < CAMBER_CELL_PX; i++)
+            to[first + i] += i < x % CAMBER_CELL_PX ? 0u : i == x % CAMBER_CELL_PX ? here : height;
+    }
+}
+
+/* ---- All edges ---- */
+
+/* Adds edge k of a vector, which is not inside a pixel. */
+CAMBER_FN void camber_area_add_larger(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
+    const float turn = camber_lane_of(&t->turn, k);
+    if (turn != 0.0f)
+        camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
+    /* An edge that begins where the last row of cells ends changes the winding at the corners of that end. */
+    if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k) ||
+        camber_integer_of(&t->above, k) <= camber_integer_of(&t->below, k))
+        camber_area_add_edge(s, t, k, where);
+    else if (camber_integer_of(&t->flat, k))
+        camber_area_mark_flat(s, t, k, where);
+}
+
 /* Adds the first `count` edges of a vector. */
-CAMBER_FN void camber_area_add(camber_area_state *s, const camber_tile_edges *t, int count, camber_tile_rows where) {
+CAMBER_FN void camber_area_add(camber_area_state *s, const camber_ring_edges *ring, int count, camber_tile_rows where) {
+    const camber_mask wanted = camber_numbers(0) < (float)count;
+    camber_tile_edges t;
+    camber_tiny_edges tiny;
     if (!s->has_edges)
         camber_area_begin(s);
-    for (int k = 0; k < count; k++) {
-        const float turn = camber_lane_of(&t->turn, k);
-        if (turn != 0.0f)
-            camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
-        /* An edge that begins where the last row of cells ends changes the winding at the corners of that end. */
-        if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k) ||
-            camber_integer_of(&t->above, k) <= camber_integer_of(&t->below, k))
-            camber_area_add_edge(s, t, k, where);
-        else if (camber_integer_of(&t->flat, k))
-            camber_area_mark_flat(s, t, k, where);
+    t.in = *ring;
+    t.in.x0 = ring->x0 - where.left;
+    t.in.x1 = ring->x1 - where.left;
+    t.in.y0 = ring->y0 - where.top;
+    t.in.y1 = ring->y1 - where.top;
+    camber_tiny_edges_of(&t.in, wanted, where, &tiny);
+    const int all_tiny = !CAMBER_ANY(wanted & ~tiny.are);
+    if (all_tiny) {
+        t.slope = (t.in.x1 - t.in.x0) / (tiny.are ? t.in.y1 - t.in.y0 : CAMBER_REAL(1.0f));
+        t.turn = CAMBER_REAL(0.0f);
+        t.matters = tiny.are;
+        t.flat = tiny.are & ~tiny.are;
+    } else {
+        camber_tile_edges_of(ring, wanted, where, &t);
     }
-    camber_area_place(s, t, count, where);
+    for (int k = 0; k < count; k++) {
+        if (camber_integer_of(&tiny.are, k))
+            camber_area_add_tiny(s, &tiny, k, where);
+        else
+            camber_area_add_larger(s, &t, k, where);
+    }
+    camber_area_place(s, &t, count, where);
 }
 
 #endif

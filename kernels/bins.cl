@@ -1,19 +1,23 @@
 /* The lists that segments are added to: one for each tile and, after these, one for each row of tiles, with the edges
  * of rings that may cross its top. bin_count and bin_scatter take a chunk of segments each, in the same steps.
  *
- * Most boxes are one tile or two, away from the area's sides, and a segment with such a box touches all of its tiles.
- * These are handled sixteen at a time. First the entries are written to a queue without a branch, since no processor
- * can predict which box is a single tile. The other boxes are handled one by one. */
+ * A bunch of edges gets one entry. Most boxes of other segments are one tile or two, away from the sides of the area;
+ * a segment with such a box touches all of its tiles. These are handled sixteen at a time. First the entries are
+ * written to a queue without a branch, since no processor can predict which box is a single tile. The other boxes are
+ * handled one by one. */
 #ifndef CAMBER_BINS_CL
 #define CAMBER_BINS_CL
 
 #include "segment.h"
 
-/* Queued entries of lists: the list's number above LISTED_BITS, below it the segment's number relative to `base`. A row
- * of tiles and its top have at most LISTED_ROOM entries, and sixteen boxes have 3 each. */
+/* Queued entries of lists: the list's number above LISTED_BITS, below it the segment's number relative to `base`, with
+ * LISTED_BUNCH for a bunch. A row of tiles and its top have at most LISTED_ROOM entries, sixteen boxes have 3 each,
+ * and a bunch and its edges have at most LISTED_SIXTEEN. */
 #define LISTED_MOST 512
 #define LISTED_ROOM (CAMBER_TILES_MAX + 1)
-#define LISTED_BITS 12
+#define LISTED_BITS 13
+#define LISTED_SIXTEEN (CAMBER_BUNCH_SIDE * (CAMBER_BUNCH_SIDE + 16))
+#define LISTED_BUNCH 0x1000u
 
 typedef struct listed {
     camber_u32 entries[LISTED_MOST], count, base;
@@ -31,8 +35,9 @@ static __attribute__((noinline)) void put_listed(const bins *to, listed *l, camb
     for (camber_u32 i = 0; i < count && !to->lists; i++)
         to->own[l->entries[i] >> LISTED_BITS]++;
     for (camber_u32 i = 0; i < count && to->lists; i++) {
-        const camber_u32 list = l->entries[i] >> LISTED_BITS;
-        to->lists[to->starts[list] + to->own[list]++] = from + (l->entries[i] & ((1u << LISTED_BITS) - 1u));
+        const camber_u32 list = l->entries[i] >> LISTED_BITS, which = l->entries[i] & (LISTED_BUNCH - 1u);
+        const camber_u32 bunch = l->entries[i] & LISTED_BUNCH ? CAMBER_LISTED_BUNCH : 0u;
+        to->lists[to->starts[list] + to->own[list]++] = (from + which) | bunch;
     }
     l->count = 0;
     l->base = base;
@@ -53,6 +58,23 @@ static __attribute__((noinline)) void list_any(global const float *segments, glo
             l->entries[l->count++] = (row + x) << LISTED_BITS | (which - l->base);
         if (among_edges && y >= camber_first_top(box))
             l->entries[l->count++] = (c->of.columns * c->of.rows + y) << LISTED_BITS | (which - l->base);
+    }
+}
+
+/* Lists a bunch of edges in all tiles of its box, and each of its edges in the rows whose tops it may cross. boxes:
+ * those of the sixteen edges, of which `from` is the number of the first. */
+static inline void list_bunch(global const camber_u32 *boxes, camber_u32 bunch, camber_u32 from,
+                              const camber_bin_args *c, listed *l) {
+    const camber_u32 entry = LISTED_BUNCH | (from - l->base + CAMBER_BUNCH_FIRST(bunch));
+    for (camber_u32 y = CAMBER_BUNCH_Y(bunch); y <= CAMBER_BUNCH_LAST_Y(bunch); y++) {
+        const camber_u32 top = (c->of.columns * c->of.rows + y) << LISTED_BITS;
+        for (camber_u32 x = CAMBER_BUNCH_X(bunch); x <= CAMBER_BUNCH_LAST_X(bunch); x++)
+            l->entries[l->count++] = (y * c->of.columns + x) << LISTED_BITS | entry;
+        for (camber_u32 k = 0; k < 16 && (y == 0 || y > CAMBER_BUNCH_Y(bunch)); k++) {
+            const camber_u32 box = boxes[k];
+            l->entries[l->count] = top | (from - l->base + k);
+            l->count += box != CAMBER_NO_BOX && y >= camber_first_top(box) && y <= CAMBER_BOX_LAST_Y(box);
+        }
     }
 }
 
@@ -97,8 +119,8 @@ static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from
 
 /* Adds the segments of a chunk to their lists, or counts them. */
 static __attribute__((noinline)) void bin_chunk(global const float *segments, global const float *edges,
-                                                global const camber_u32 *boxes, camber_u32 chunk,
-                                                const camber_bin_args *c, const bins *to) {
+                                                global const camber_u32 *boxes, global const camber_u32 *bunches,
+                                                camber_u32 chunk, const camber_bin_args *c, const bins *to) {
     const camber_u32 from = chunk * c->a_chunk,
                      end = from + c->a_chunk < c->segment_count ? from + c->a_chunk : c->segment_count;
     listed l;
@@ -106,8 +128,13 @@ static __attribute__((noinline)) void bin_chunk(global const float *segments, gl
     l.base = from;
     for (camber_u32 i = from; i < end; i += 16) {
         sixteen_boxes b;
-        if (l.count > LISTED_MOST - 3 * 16 || i - l.base > (1u << LISTED_BITS) - 16)
+        if (l.count > LISTED_MOST - LISTED_SIXTEEN || i - l.base > LISTED_BUNCH - 16)
             put_listed(to, &l, i);
+        const camber_u32 bunch = i - c->first_edge < c->edge_count ? bunches[i / 16] : CAMBER_NO_BUNCH;
+        if (bunch != CAMBER_NO_BUNCH) {
+            list_bunch(boxes + i, bunch, i, c, &l);
+            continue;
+        }
         look_at_boxes(boxes, i, l.base, c, &b);
         camber_u32 count = l.count;
         for (camber_u32 k = 0; k < 16; k++) {

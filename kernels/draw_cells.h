@@ -287,10 +287,18 @@ CAMBER_FN void camber_draw_segment(camber_tile_state *c, const camber_drawn_tile
 CAMBER_NOINLINE void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
     CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
     camber_ring_edges e;
-    camber_tile_edges t;
     camber_ring_edges_of(ends[0], ends[1], ends[2], ends[3], &e);
-    camber_tile_edges_of(&e, 1, d->where, &t);
-    camber_area_add(&c->area, &t, 1, d->where);
+    camber_area_add(&c->area, &e, 1, d->where);
+}
+
+/* Adds those edges of a bunch whose boxes touch the tile. `first` is the number of its first edge. */
+CAMBER_FN void camber_add_bunch(camber_tile_state *c, const camber_drawn_tile *d, size_t first) {
+    for (size_t which = first; which < first / 16u * 16u + 16u; which++) {
+        CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
+        if (CAMBER_BITS(d->from.edges[camber_edge_brush(which)]) == d->brush &&
+            camber_boxes_touch_tile(ends[0], ends[1], ends[2], ends[3], d->where))
+            camber_add_ring_edge(c, d, which);
+    }
 }
 
 /* Draws the polygon whose edges have been added. */
@@ -344,7 +352,7 @@ CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *
 /* Draws entry k of the lists. */
 CAMBER_FN void camber_draw_listed(camber_tile_state *c, camber_drawn_tile *d, camber_u32 k) {
     const camber_draw_source *from = &d->from;
-    const size_t which = from->lists[k];
+    const size_t which = camber_listed(from->lists[k]);
     camber_u32 brush = (camber_u32)which - from->first_edge < from->edge_count
                            ? CAMBER_BITS(from->edges[camber_edge_brush(which)])
                            : CAMBER_NO_EDGE;
@@ -356,7 +364,9 @@ CAMBER_FN void camber_draw_listed(camber_tile_state *c, camber_drawn_tile *d, ca
         camber_draw_with(c, d, brush);
         c->winding = camber_take_winding(&d->left, brush);
     }
-    if (is_edge)
+    if (is_edge && from->lists[k] & CAMBER_LISTED_BUNCH)
+        camber_add_bunch(c, d, which);
+    else if (is_edge)
         camber_add_ring_edge(c, d, which);
     else
         camber_draw_segment(c, d, which);

@@ -85,7 +85,7 @@ CAMBER_FN camber_u32 camber_changes_until(CAMBER_GLOBAL const camber_u32 *change
 
 /* The edges of rings are stored apart from segments, in groups of sixteen: first the ends of each, ax, ay, bx, by, then
  * the brushes of all. An edge has the number of its segment, whose own words are not used. A segment of a line that is
- * among edges has CAMBER_NO_EDGE in place of its brush. */
+ * among edges has CAMBER_NO_EDGE in place of its brush, and so have edges that are not drawn. */
 #define CAMBER_SIXTEEN_EDGES_WORDS 80u
 #define CAMBER_NO_EDGE 0xffffffffu
 
@@ -96,6 +96,15 @@ CAMBER_FN size_t camber_edge_ends(size_t i) {
 
 CAMBER_FN size_t camber_edge_brush(size_t i) {
     return CAMBER_SIXTEEN_EDGES_WORDS * (i / 16u) + 64u + i % 16u;
+}
+
+/* An entry of a list is the number of a segment or edge, or, with CAMBER_LISTED_BUNCH, that of the first edge of a
+ * bunch: all edges of one sixteen that have its brush. */
+#define CAMBER_LISTED_BUNCH 0x80000000u
+
+/* Returns the number of the segment or edge that an entry names. */
+CAMBER_FN size_t camber_listed(camber_u32 entry) {
+    return entry & ~CAMBER_LISTED_BUNCH;
 }
 
 typedef struct camber_segment {
@@ -313,6 +322,45 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
  */
 CAMBER_FN camber_u32 camber_first_top(camber_u32 box) {
     return CAMBER_BOX_FIRST_Y(box) == 0u ? 0u : CAMBER_BOX_FIRST_Y(box) + 1u;
+}
+
+/* ---- Bunches of edges ---- */
+
+/* A bunch in one word: x and y of its box's first tile, one byte each, then how many tiles follow along each side, in
+ * two bits, and which of the sixteen edges is its first. */
+#define CAMBER_NO_BUNCH 0xffffffffu
+#define CAMBER_BUNCH_SIDE 4u
+#define CAMBER_BUNCH_X(bunch) ((bunch)&255u)
+#define CAMBER_BUNCH_Y(bunch) ((bunch) >> 8 & 255u)
+#define CAMBER_BUNCH_LAST_X(bunch) (CAMBER_BUNCH_X(bunch) + ((bunch) >> 16 & 3u))
+#define CAMBER_BUNCH_LAST_Y(bunch) (CAMBER_BUNCH_Y(bunch) + ((bunch) >> 18 & 3u))
+#define CAMBER_BUNCH_FIRST(bunch) ((bunch) >> 20)
+
+/* Sixteen edges that are stored together are a bunch if all that are drawn have one brush, and if they would have at
+ * least four times as many entries in the lists of tiles as their common box has tiles. It has one entry in each of
+ * these lists instead. Returns the bunch, or CAMBER_NO_BUNCH. */
+CAMBER_FN camber_u32 camber_bunch_of(CAMBER_GLOBAL const camber_u32 *boxes, CAMBER_GLOBAL const camber_u32 *brushes) {
+    camber_u32 x0 = 255u, y0 = 255u, x1 = 0u, y1 = 0u, entries = 0u, first = 16u, least = CAMBER_NO_EDGE, most = 0u;
+#ifdef CAMBER_AHEAD_OF_TIME /* Oclgrind knows no reductions of vectors */
+#pragma clang loop vectorize_width(16)
+#endif
+    for (camber_u32 k = 0u; k < 16u; k++) {
+        const camber_u32 box = boxes[k], brush = brushes[k], undrawn = box == CAMBER_NO_BOX ? ~0u : 0u;
+        const camber_u32 fx = CAMBER_BOX_FIRST_X(box), fy = CAMBER_BOX_FIRST_Y(box) | undrawn,
+                         lx = CAMBER_BOX_LAST_X(box), ly = CAMBER_BOX_LAST_Y(box), which = k | undrawn;
+        x0 = CAMBER_LESS(x0, fx);
+        y0 = CAMBER_LESS(y0, fy);
+        x1 = CAMBER_MORE(x1, lx);
+        y1 = CAMBER_MORE(y1, ly);
+        entries += ((lx - fx + 1u) * (ly - fy + 1u)) & ~undrawn;
+        first = CAMBER_LESS(first, which);
+        least = CAMBER_LESS(least, brush | undrawn);
+        most = CAMBER_MORE(most, brush & ~undrawn);
+    }
+    const camber_u32 wide = x1 - x0 + 1u, high = y1 - y0 + 1u;
+    return least == most && wide <= CAMBER_BUNCH_SIDE && high <= CAMBER_BUNCH_SIDE && entries >= 4u * wide * high
+               ? x0 | y0 << 8 | (wide - 1u) << 16 | (high - 1u) << 18 | first << 20
+               : CAMBER_NO_BUNCH;
 }
 
 #ifdef CAMBER_DEVICE

@@ -5,7 +5,9 @@
  * its slots), rows[CAMBER_RASTER_ROW_WORDS * row count], changes[first_change + change_count]. For the n slots of a
  * range, rounded up to sixteens, it writes from element `base` on:
  *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
- *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, for slots that belong to rings
+ *     edges[CAMBER_SIXTEEN_EDGES_WORDS * n / 16] instead, for slots that belong to rings; their brushes are
+ *         CAMBER_NO_EDGE if they are not drawn
+ *     bunches[n / 16] for slots between the first and the last edge
  *     boxes[n]; CAMBER_NO_BOX for a slot that ends no segment, or one that is not drawn
  *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH, from slot_arc_lengths[2 * slot_count];
  *         0 if the part has none
@@ -252,7 +254,9 @@ static inline void make_edges(part_points from, global const float *rows, global
     e.is_drawn &= camber_pitch_edge_of(r->eye, &flat, &s);
 #endif
     const camber_words box = camber_segment_box(&s, e.is_drawn, r->left, r->top, r->columns, r->rows);
+    const camber_words brushes = take_brushes(changes, (camber_u32)first, r, e.row[3]);
     CAMBER_STORE(box, 0, to.boxes);
+    CAMBER_STORE(box == CAMBER_NO_BOX ? (camber_words)(CAMBER_NO_EDGE) : brushes, 0, to.brushes);
     if (CAMBER_ALL(box == CAMBER_NO_BOX))
         return;
     const camber_real x0 = put_together(s.ax, s.bx, 0), y0 = put_together(s.ay, s.by, 0);
@@ -261,7 +265,6 @@ static inline void make_edges(part_points from, global const float *rows, global
     CAMBER_STORE(put_together(x0, y0, 1), 1, to.ends);
     CAMBER_STORE(put_together(x1, y1, 0), 2, to.ends);
     CAMBER_STORE(put_together(x1, y1, 1), 3, to.ends);
-    CAMBER_STORE(take_brushes(changes, (camber_u32)first, r, e.row[3]), 0, to.brushes);
 }
 
 /* Returns the range whose slots a work-item takes. */
@@ -283,9 +286,10 @@ CAMBER_KERNEL(1, setup,
                global float *restrict segments, global camber_u32 *restrict boxes,
                global const camber_setup_args *restrict ranges, const uint range_count,
                global float *restrict arc_lengths, global float *restrict planes,
-               global const camber_u32 *restrict changes, global float *restrict edges),
+               global const camber_u32 *restrict changes, global float *restrict edges,
+               global camber_u32 *restrict bunches),
               (x, y, info, joins, slot_arc_lengths, rows, segments, boxes, ranges, range_count, arc_lengths, planes,
-               changes, edges)) {
+               changes, edges, bunches)) {
     const camber_setup_args r = ranges[range_of(ranges, range_count, (uint)CAMBER_WORK_ITEM)];
     const uint most = CAMBER_SETUP_SLOTS(CAMBER_LANES), from = most * ((uint)CAMBER_WORK_ITEM - r.first_item),
                left = (r.end - r.first - from + 15) / 16 * 16;
@@ -304,5 +308,10 @@ CAMBER_KERNEL(1, setup,
             make_edges(points, rows, changes, first, &r, to);
         else
             make_segments(points, rows, slot_arc_lengths, first, &r, to);
+        if ((i + CAMBER_LANES) % 16 != 0 || !(r.makes_edges || r.among_edges))
+            continue;
+        const size_t sixteen = at / 16 * 16;
+        global const camber_u32 *brushes = (global const camber_u32 *)edges + camber_edge_brush(sixteen);
+        bunches[at / 16] = r.makes_edges ? camber_bunch_of(boxes + sixteen, brushes) : CAMBER_NO_BUNCH;
     }
 }

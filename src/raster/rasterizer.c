@@ -100,7 +100,8 @@ static camber_status set_up(camber_raster *raster, const camber_setup_args *args
                                            BUFFER(BUFFER_ARC_LENGTHS),
                                            BUFFER(BUFFER_PLANES),
                                            BUFFER(BUFFER_CHANGES),
-                                           BUFFER(BUFFER_EDGES)};
+                                           BUFFER(BUFFER_EDGES),
+                                           BUFFER(BUFFER_BUNCHES)};
     return status == CAMBER_OK ? run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, items)
                                : status;
 }
@@ -177,12 +178,12 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
         camber_raster_reserve(raster, BUFFER_COUNTS, 4 * (size_t)c.lists * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.lists);
-    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_EDGES), BUFFER(BUFFER_BOXES),
-                                       BUFFER(BUFFER_COUNTS), CAMBER_ARG_VALUE(c)};
+    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_EDGES),  BUFFER(BUFFER_BOXES),
+                                       BUFFER(BUFFER_BUNCHES),  BUFFER(BUFFER_COUNTS), CAMBER_ARG_VALUE(c)};
     const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.lists),
                                        CAMBER_ARG_VALUE(chunk_count)};
     if (status == CAMBER_OK)
-        status = run(raster, STAGE_BIN_COUNT, count, 5, chunk_count);
+        status = run(raster, STAGE_BIN_COUNT, count, sizeof count / sizeof *count, chunk_count);
     if (status == CAMBER_OK)
         status = run(raster, STAGE_BIN_SCAN, total, 4, c.lists / 16);
     return status;
@@ -224,9 +225,9 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
 
 static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
     const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_EDGES),  BUFFER(BUFFER_BOXES),
-                                      BUFFER(BUFFER_STARTS),   BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_LISTS),
-                                      CAMBER_ARG_VALUE(c)};
-    return run(raster, STAGE_BIN_SCATTER, fill, 7, chunk_count);
+                                      BUFFER(BUFFER_BUNCHES),  BUFFER(BUFFER_STARTS), BUFFER(BUFFER_COUNTS),
+                                      BUFFER(BUFFER_LISTS),    CAMBER_ARG_VALUE(c)};
+    return run(raster, STAGE_BIN_SCATTER, fill, sizeof fill / sizeof *fill, chunk_count);
 }
 
 /* Computes how edges change the winding numbers to their right. */
@@ -456,6 +457,8 @@ static camber_status prepare(camber_raster *raster, const listed_scene *p) {
         status = camber_raster_put(raster, BUFFER_CHANGES, list->changes, list->change_count * sizeof *list->changes);
     if (status == CAMBER_OK)
         status = reserve_segments(raster, segments);
+    if (status == CAMBER_OK && raster->end_edge)
+        status = camber_raster_reserve(raster, BUFFER_BUNCHES, 4 * (segments / 16));
     if (status == CAMBER_OK && raster->variant)
         status = prepare_rich(raster, scene);
     if (status == CAMBER_OK && !raster->given)

@@ -16,6 +16,7 @@ enum {
     BUFFER_BOXES,
     BUFFER_ARC_LENGTHS,
     BUFFER_PLANES,
+    BUFFER_BUNCHES, /* of edges: a word for each sixteen segments */
     BUFFER_COUNTS,
     BUFFER_TOTALS,
     BUFFER_STARTS,

@@ -110,8 +110,10 @@ static void put_segment(const camber_twin *t, const camber_part_points *part, co
         camber_edge_segment(a.x + x, a.y + y, b.x + x, b.y + y, &s);
         const camber_segment flat = s;
         drawn = drawn && (!t->scene->pitched || camber_pitch_edge_of(r->eye, &flat, &s));
-        put_edge(&s, brush_of(t, r, slot, row[3]), t->stages->edges, segment);
-        t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
+        const uint32_t box = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
+        const float brush = box == CAMBER_NO_BOX ? camber_float_of(CAMBER_NO_EDGE) : brush_of(t, r, slot, row[3]);
+        put_edge(&s, brush, t->stages->edges, segment);
+        t->stages->boxes[segment] = box;
         return;
     }
     camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear, &s);
@@ -150,9 +152,9 @@ static camber_status make_segments(const camber_twin *t, const camber_range_list
 
 /* ---- Lists ---- */
 
-static void add_to_list(const camber_twin *t, size_t segment, uint32_t *count, bool fill) {
+static void add_to_list(const camber_twin *t, uint32_t entry, uint32_t *count, bool fill) {
     if (fill)
-        t->stages->lists[*count] = (uint32_t)segment;
+        t->stages->lists[*count] = entry;
     ++*count;
 }
 
@@ -162,7 +164,7 @@ static void each_row(const camber_twin *t, size_t segment, uint32_t *counts, boo
     if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box) || segment < t->first_edge || segment >= t->end_edge)
         return;
     for (uint32_t y = camber_first_top(box); y <= CAMBER_BOX_LAST_Y(box); y++)
-        add_to_list(t, segment, counts + t->stages->tile_count + y, fill);
+        add_to_list(t, (uint32_t)segment, counts + t->stages->tile_count + y, fill);
 }
 
 /* Counts a segment in each tile that it touches, or adds it to their lists. */
@@ -176,9 +178,42 @@ static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bo
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
         const uint32_t span = camber_tile_span(words, is_edge, box, y, &of);
         for (uint32_t x = span & 255u; x <= span >> 8; x++)
-            add_to_list(t, segment, counts + y * t->columns + x, fill);
+            add_to_list(t, (uint32_t)segment, counts + y * t->columns + x, fill);
     }
     each_row(t, segment, counts, fill);
+}
+
+/* Does the same for sixteen edges that are a bunch, of which `from` is the number of the first. */
+static void each_tile_of_bunch(const camber_twin *t, uint32_t bunch, size_t from, uint32_t *counts, bool fill) {
+    const uint32_t entry = ((uint32_t)from + CAMBER_BUNCH_FIRST(bunch)) | CAMBER_LISTED_BUNCH;
+    for (uint32_t y = CAMBER_BUNCH_Y(bunch); y <= CAMBER_BUNCH_LAST_Y(bunch); y++)
+        for (uint32_t x = CAMBER_BUNCH_X(bunch); x <= CAMBER_BUNCH_LAST_X(bunch); x++)
+            add_to_list(t, entry, counts + y * t->columns + x, fill);
+    for (size_t i = from; i < from + 16; i++)
+        each_row(t, i, counts, fill);
+}
+
+/* Returns the bunch that sixteen segments are, of which `from` is the number of the first. */
+static uint32_t bunch_at(const camber_twin *t, size_t from) {
+    uint32_t brushes[16];
+    if (from < t->first_edge || from >= t->end_edge)
+        return CAMBER_NO_BUNCH;
+    for (size_t k = 0; k < 16; k++)
+        brushes[k] = camber_bits_of(t->stages->edges[camber_edge_brush(from + k)]);
+    const uint32_t bunch = camber_bunch_of(t->stages->boxes + from, brushes);
+    const bool of_lines = bunch != CAMBER_NO_BUNCH && !camber_twin_is_edge(t, from + CAMBER_BUNCH_FIRST(bunch));
+    return of_lines ? CAMBER_NO_BUNCH : bunch;
+}
+
+/* Does the same for all segments, in their order. */
+static void each_segment(const camber_twin *t, uint32_t *counts, bool fill) {
+    for (size_t i = 0; i < t->stages->segment_count; i += 16) {
+        const uint32_t bunch = bunch_at(t, i);
+        if (bunch != CAMBER_NO_BUNCH)
+            each_tile_of_bunch(t, bunch, i, counts, fill);
+        for (size_t k = i; k < i + 16 && bunch == CAMBER_NO_BUNCH; k++)
+            each_tile(t, k, counts, fill);
+    }
 }
 
 static camber_status make_lists(const camber_twin *t) {
@@ -186,16 +221,15 @@ static camber_status make_lists(const camber_twin *t) {
     uint32_t *next = camber_alloc_zero(t->context, stages->list_count, sizeof *next);
     if (!next)
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < stages->segment_count; i++)
-        each_tile(t, i, next, false);
+    each_segment(t, next, false);
     stages->starts[0] = 0;
     for (size_t i = 0; i < stages->list_count; i++) {
         stages->starts[i + 1] = stages->starts[i] + next[i];
         next[i] = stages->starts[i];
     }
     stages->lists = camber_alloc(t->context, stages->starts[stages->list_count], sizeof *stages->lists);
-    for (size_t i = 0; i < stages->segment_count && stages->lists; i++)
-        each_tile(t, i, next, true);
+    if (stages->lists)
+        each_segment(t, next, true);
     camber_free(t->context, next);
     return stages->lists ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }

@@ -9,16 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE_PX = 96, LINES = 3, RINGS = 6, PIXELS = SIDE_PX * SIDE_PX };
+enum { SIDE_PX = 96, LINES = 3, RINGS = 7, PIXELS = SIDE_PX * SIDE_PX };
 
 /* Lines that are far apart from each other: straight, bent and curved. The rings are these lines, closed, and after
- * them a square and two crossing bars that are narrower than a pixel. */
-static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f, 86.7f,
-                               43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f, 46.0f, 68.0f,
-                               56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f, 54.3f, 2.4f,  66.6f,
-                               2.4f,  66.6f, 9.7f,  54.3f, 9.7f,  70.1f, 2.4f,  70.9f, 2.4f,  70.9f, 14.7f,
-                               70.1f, 14.7f, 70.2f, 1.3f,  71.0f, 1.3f,  71.0f, 13.6f, 70.2f, 13.6f};
-static const uint32_t offsets[] = {0, 2, 6, 15, 19, 23, 27};
+ * them a square, two crossing bars that are narrower than a pixel, and a disc, most of whose edges are shorter. */
+static const float points[] = {
+    6.3f,   9.6f,   89.1f,  20.2f,  10.3f,  34.6f,  38.1f,  30.2f,  60.8f,  47.4f,  86.7f,  43.9f,  8.0f,
+    66.f,   18.0f,  58.0f,  28.0f,  56.0f,  38.0f,  60.0f,  46.0f,  68.0f,  56.0f,  76.0f,  68.0f,  80.0f,
+    80.f,   78.0f,  88.0f,  70.0f,  54.3f,  2.4f,   66.6f,  2.4f,   66.6f,  9.7f,   54.3f,  9.7f,   70.1f,
+    2.4f,   70.9f,  2.4f,   70.9f,  14.7f,  70.1f,  14.7f,  70.2f,  1.3f,   71.0f,  1.3f,   71.0f,  13.6f,
+    70.2f,  13.6f,  22.93f, 86.30f, 22.78f, 86.90f, 22.39f, 87.45f, 21.91f, 87.93f, 21.43f, 88.29f, 20.95f,
+    88.52f, 20.40f, 88.60f, 19.76f, 88.52f, 19.13f, 88.29f, 18.66f, 87.93f, 18.41f, 87.45f, 18.34f, 86.90f,
+    18.33f, 86.30f, 18.34f, 85.70f, 18.41f, 85.15f, 18.66f, 84.67f, 19.13f, 84.31f, 19.76f, 84.08f, 20.40f,
+    84.00f, 20.95f, 84.08f, 21.43f, 84.31f, 21.91f, 84.67f, 22.39f, 85.15f, 22.78f, 85.70f};
+static const uint32_t offsets[] = {0, 2, 6, 15, 19, 23, 27, 51};
 
 static const float even[] = {9.3f, 6.1f}, roomy[] = {7, 10.5f, 0, 9};
 static const camber_dash dashes[] = {{even, 2}, {roomy, 4}};

@@ -324,6 +324,8 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
+mutant strip kernels/area.h "areas: edges inside a pixel that end with their cells" 'to[first + i] += height' 'to[first + i] += 0u'
+mutant strip kernels/rasterize.cl "areas: bunches of other areas" 'CAMBER_LOAD(v, brushes) == brush' 'CAMBER_LOAD(v, brushes) != brush'
 group='along lines: glyphs'
 mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \
     'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.0f)'

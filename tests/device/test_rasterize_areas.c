@@ -283,17 +283,32 @@ static rings made_rectangles(double off) {
     return r;
 }
 
+/* A shore with waves of several lengths, whose edges are a twentieth of a pixel long. */
+static rings made_shore(void) {
+    enum { POINTS = 20000 };
+    rings r = rings_begin(POINTS);
+    for (int i = 0; i < POINTS; i++) {
+        const double turn = 6.283185307179586 * i / POINTS;
+        const double radius = 150 + 20 * sin(7 * turn) + 5 * sin(61 * turn) + 0.3 * sin(1501 * turn);
+        add_point(&r, 250 + radius * cos(turn), 250 + radius * sin(turn));
+    }
+    end_ring(&r, 0);
+    return r;
+}
+
 /* Apart from each other, twice over each other, three times with borders less than a pixel apart, overlapping each
- * other and themselves, tiny ones, and some whose edges lie level, on borders of pixels and between them. */
+ * other and themselves, tiny ones, some whose edges lie level, on borders of pixels and between them, and one of many
+ * edges inside each pixel. */
 static void test_truth(void **state) {
     const fixture *f = *state;
     camber_fill evenodd = BLACK;
     evenodd.rule = CAMBER_FILL_EVENODD;
-    rings all[] = {made_stars(1, 0),          made_stars(2, 0),   made_stars(3, 0.3),       made_rings(5, 60, 200, 1),
-                   made_rings(6, 600, 60, 1), made_rectangles(0), made_rectangles(5.0 / 16)};
-    static const char *const names[] = {"apart", "twice", "moved", "overlapping", "many", "level", "level, between"};
-    static const double bounds[] = {0.15, 0.25, 0.4, 0.04, 0.15, 0, 0.2};
-    for (int i = 0; i < 7; i++) {
+    rings all[] = {made_stars(1, 0),          made_stars(2, 0),   made_stars(3, 0.3),        made_rings(5, 60, 200, 1),
+                   made_rings(6, 600, 60, 1), made_rectangles(0), made_rectangles(5.0 / 16), made_shore()};
+    static const char *const names[] = {"apart", "twice", "moved",          "overlapping",
+                                        "many",  "level", "level, between", "a shore"};
+    static const double bounds[] = {0.15, 0.25, 0.4, 0.04, 0.15, 0, 0.2, 0.04};
+    for (int i = 0; i < 8; i++) {
         for (int rule = 0; rule < (i == 1 ? 1 : 2); rule++) { /* by even-odd nothing is twice inside */
             picture p = draw_rings(f, all + i, rule ? &evenodd : &BLACK, 0);
             double *truth = sample_rings(all + i, rule);

@@ -5,15 +5,12 @@
  * A pin is an area whose size is known only in pixels, so that marks become areas of the map once the view is known. */
 #include "serve/overlay.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum {
     MOST_PATHS = 100,
@@ -21,21 +18,13 @@ enum {
     MOST_POINTS = 100000,
     MOST_FEATURES = 10000,
     DEEPEST = 8,
-    MOST_WORDS = 500,
-    MOST_ICON_BYTES = 64 << 20
+    MOST_WORDS = 500
 };
 enum { WORLD_PX = 512, POINT_ZOOM = 16, ARC_POINTS = 32, MOST_ZOOM = CAMBER_ROUTE_MOST_ZOOM };
 
 static const double PI = 3.14159265358979323846, MOST_LATITUDE = 85.051129, FARTHEST_DEG = 540.0;
 static const double PIN_HEIGHT_PX = 21, PIN_RADIUS_PX = 9.5, EDGE_PX = 1.25, EYE_PX = 3.6, DOT_RADIUS_PX = 6;
 static const double MOST_WIDTH_PX = 500, MOST_SCALE = 20, MOST_OFFSET_PX = 1000, MOST_TEXT_PX = 200;
-
-struct camber_overlay_icons {
-    char *sprite;
-    json_t *names;            /* an object whose keys are the icons' names */
-    size_t sheet_bytes;       /* of the larger picture, decoded */
-    atomic_size_t held_bytes; /* of all overlays that have icons */
-};
 
 struct camber_overlay {
     camber_overlay_icons *icons; /* NULL: it has none of them */
@@ -476,7 +465,7 @@ static bool read_icon(maker *m, piece p, mark *made) {
         return refuse(m, "its icon is not one of those that are built in: pin and dot");
     made->icon = p;
     snprintf(name, sizeof name, "%.*s", (int)(p.length < sizeof name ? p.length : 0), p.at);
-    return json_object_get(m->icons->names, name) ||
+    return camber_overlay_icons_has(m->icons, name) ||
            refuse(m, "its icon is neither pin nor dot, nor in the server's sprite");
 }
 
@@ -842,63 +831,6 @@ static bool add_mark_layers(maker *m, size_t index) {
            refuse(m, "no memory");
 }
 
-/* ---- Icons of an operator's own ---- */
-
-/* The bytes of a PNG's pixels by its header. 0: it is none. */
-static size_t measure_sheet(const char *sprite, const char *ending) {
-    char path[4096];
-    uint8_t head[24];
-    snprintf(path, sizeof path, "%.*s%s", (int)(sizeof path - strlen(ending) - 1), sprite, ending);
-    FILE *file = fopen(path, "rb");
-    const bool is_read = file && fread(head, sizeof head, 1, file) == 1;
-    if (file)
-        fclose(file);
-    size_t sides[2] = {0};
-    for (int i = 0; is_read && i < 8; i++)
-        sides[i / 4] = sides[i / 4] << 8 | head[16 + i];
-    return 4 * sides[0] * sides[1];
-}
-
-/* Each overlay with icons decodes the sprite. Returns false if too many of them wait already; one may always. */
-static bool hold_icons(camber_overlay_icons *icons, camber_overlay *overlay) {
-    const size_t held = atomic_fetch_add(&icons->held_bytes, icons->sheet_bytes);
-    if (held && held + icons->sheet_bytes > MOST_ICON_BYTES) {
-        atomic_fetch_sub(&icons->held_bytes, icons->sheet_bytes);
-        return false;
-    }
-    overlay->icons = icons;
-    return true;
-}
-
-int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons) {
-    char list[4096], picture[4096];
-    if ((size_t)snprintf(list, sizeof list, "%s.json", sprite) >= sizeof list)
-        return ENAMETOOLONG;
-    snprintf(picture, sizeof picture, "%.*s.png", (int)(sizeof picture - 5), sprite);
-    if (access(list, R_OK) != 0 || access(picture, R_OK) != 0)
-        return errno;
-    camber_overlay_icons *made = calloc(1, sizeof *made);
-    if (made && (made->sprite = strdup(sprite)))
-        made->names = json_load_file(list, JSON_REJECT_DUPLICATES, NULL);
-    if (made && json_object_size(made->names)) {
-        const size_t plain = measure_sheet(sprite, ".png"), dense = measure_sheet(sprite, "@2x.png");
-        made->sheet_bytes = plain > dense ? plain : dense;
-        *icons = made;
-        return 0;
-    }
-    const int cause = made && made->sprite ? EINVAL : ENOMEM;
-    camber_overlay_icons_destroy(made);
-    return cause;
-}
-
-void camber_overlay_icons_destroy(camber_overlay_icons *icons) {
-    if (icons) {
-        json_decref(icons->names);
-        free(icons->sprite);
-    }
-    free(icons);
-}
-
 /* ---- The overlay ---- */
 
 static bool read_all(maker *m, const camber_overlay_desc *desc, json_t **document) {
@@ -922,7 +854,7 @@ static camber_status read_features(const maker *m, const camber_overlay_desc *de
     const camber_fonts_desc fonts = {.folders = desc->fonts, .folder_count = desc->font_count};
     json_t *document = json_pack("{s:i, s:O, s:O}", "version", 8, "sources", m->sources, "layers", m->layers);
     if (document && m->has_icons)
-        json_object_set_new(document, "sprite", json_string(m->icons->sprite));
+        json_object_set_new(document, "sprite", json_string(camber_overlay_icons_get_sprite(m->icons)));
     char *text = document ? json_dumps(document, JSON_COMPACT) : NULL;
     camber_status status =
         text ? camber_style_parse(made->context, text, strlen(text), "overlay", &made->style) : CAMBER_ERROR_MEMORY;
@@ -967,7 +899,7 @@ int camber_overlay_create(const camber_overlay_desc *desc, camber_route_request 
         m.context = made->context;
         result = read_all(&m, desc, &document) ? 200 : 400;
     }
-    if (result == 200 && m.has_icons && !hold_icons(desc->icons, made))
+    if (result == 200 && m.has_icons && !(made->icons = camber_overlay_icons_hold(desc->icons)))
         result = 503;
     if (result == 200 && json_array_size(m.layers)) {
         bool is_ours = false;
@@ -994,7 +926,7 @@ void camber_overlay_destroy(camber_overlay *overlay) {
     camber_style_destroy(overlay->style);
     camber_context_destroy(overlay->context);
     if (overlay->icons)
-        atomic_fetch_sub(&overlay->icons->held_bytes, overlay->icons->sheet_bytes);
+        camber_overlay_icons_release(overlay->icons);
     free(overlay);
 }
 

@@ -8,11 +8,12 @@
  *     padding, maxzoom                                                               for views that are fitted
  *
  * Other parameters are ignored. GeoJSON is drawn by its properties of the simplestyle specification, and of a point's
- * property `text`. No text of a request is repeated in a reason, and no files are opened except fonts and
- * the icons of the server's operator. */
+ * property `text`. No text of a request is repeated in a reason, and no files are opened except fonts and the
+ * icons of the server's operator. */
 #ifndef CAMBER_SERVE_OVERLAY_H
 #define CAMBER_SERVE_OVERLAY_H
 
+#include "serve/icons.h"
 #include "serve/route.h"
 
 #include "camber_map.h"
@@ -22,14 +23,6 @@ enum { CAMBER_OVERLAY_REASON_SIZE = 256, CAMBER_OVERLAY_MOST_BODY_BYTES = 1 << 2
 typedef struct camber_overlay_param {
     const char *name, *value; /* decoded */
 } camber_overlay_param;
-
-/* Icons of an operator's own: a sprite, as styles have it. */
-typedef struct camber_overlay_icons camber_overlay_icons;
-
-/* sprite: the path of its files without their endings, .json and .png. Returns an errno; EINVAL: .json lists no icons.
- */
-int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons);
-void camber_overlay_icons_destroy(camber_overlay_icons *icons);
 
 typedef struct camber_overlay_desc {
     const camber_overlay_param *params; /* param_count of them, in the order of the query */
@@ -42,9 +35,8 @@ typedef struct camber_overlay_desc {
 } camber_overlay_desc;
 
 /* Makes the overlay of a picture, and fits the picture's view: request->view becomes CAMBER_ROUTE_CENTER. *overlay is
- * NULL if nothing is drawn. Returns 200; 400, with a reason; 500 (no memory, or the icons cannot
- * be read); or 503 (too many overlays with icons wait). Any thread may call it, and any one
- * thread at a time may use the result. */
+ * NULL if nothing is drawn. Returns 200; 400, with a reason; 500 (no memory, or the icons cannot be read); or 503 (too
+ * many overlays with icons wait). Any thread may call it, and any one thread at a time may use the result. */
 int camber_overlay_create(const camber_overlay_desc *desc, camber_route_request *request, camber_overlay **overlay,
                           char reason[CAMBER_OVERLAY_REASON_SIZE]);
 void camber_overlay_destroy(camber_overlay *overlay);

@@ -43,4 +43,13 @@ static inline void camber_sine_cosine(double angle, double *sine, double *cosine
     *cosine = turn == 0 ? c : turn == 1 ? -s : turn == 2 ? -c : s;
 }
 
+/* Turns a direction, given by its sine and cosine. */
+static inline void camber_rotate(double angle, double *sine, double *cosine) {
+    double s, c;
+    camber_sine_cosine(angle, &s, &c);
+    const double turned = *cosine * c - *sine * s;
+    *sine = *cosine * s + *sine * c;
+    *cosine = turned;
+}
+
 #endif

@@ -209,13 +209,8 @@ static camber_label_frame frame_on(const item_maker *m, const camber_label_rule 
         cosine = m->track.vertical ? point.sine : point.cosine;
         sine = m->track.vertical ? -point.cosine : point.sine;
     }
-    if (rule->text_turn != 0.0) {
-        double s, c;
-        camber_sine_cosine(rule->text_turn, &s, &c);
-        const double turned = cosine * c - sine * s;
-        sine = cosine * s + sine * c;
-        cosine = turned;
-    }
+    if (rule->text_turn != 0.0)
+        camber_rotate(rule->text_turn, &sine, &cosine);
     const double scale = m->track.size / rule->text_px;
     return (camber_label_frame){.x = point.x,
                                 .y = point.y,

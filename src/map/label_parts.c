@@ -47,13 +47,8 @@ static camber_label_frame make_frame(const camber_label_layout *layout, const do
         cosine = length > 0.0 ? (to[0] - frame.x) / length : 1.0;
         sine = length > 0.0 ? (to[1] - frame.y) / length : 0.0;
     }
-    if (turn != 0.0) {
-        double s, c;
-        camber_sine_cosine(turn, &s, &c);
-        const double turned = cosine * c - sine * s;
-        sine = cosine * s + sine * c;
-        cosine = turned;
-    }
+    if (turn != 0.0)
+        camber_rotate(turn, &sine, &cosine);
     frame.xx = scale * cosine;
     frame.yx = scale * sine;
     frame.xy = -frame.yx;

@@ -6,7 +6,7 @@
 
 typedef struct camber_overlay_icons camber_overlay_icons;
 
-/* sprite: the path of its files without their endings, .json and .png. Returns an errno; EINVAL: no icons are listed. */
+/* sprite: the path of its files without their endings, .json and .png. Returns an errno; EINVAL: no icons listed. */
 int camber_overlay_icons_create(const char *sprite, camber_overlay_icons **icons);
 void camber_overlay_icons_destroy(camber_overlay_icons *icons);
 const char *camber_overlay_icons_get_sprite(const camber_overlay_icons *icons);

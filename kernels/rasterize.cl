@@ -23,7 +23,7 @@
 #define WRITE(vector, at) __builtin_nontemporal_store(vector, (global camber_words *)(at))
 #else
 #define AHEAD 0
-#define ASK_FOR(address) ((void)0)
+#define ASK_FOR(address) ((void)(address))
 #define WRITE(vector, at) CAMBER_STORE(vector, 0, at)
 #endif
 

@@ -1056,7 +1056,7 @@ def test_tiles():
                 got = server.get(f"/{zoom}/{x}/{y}.png")[2]
                 compared += 1
                 same += got == wanted
-                expect(got == wanted or (zoom > 0 and difference(decode(got), decode(wanted)) <= 1),
+                expect(got == wanted,
                        f"{zoom}/{x}/{y}: differs by {difference(decode(got), decode(wanted))}")
     expect(compared == 135 and same > 40, f"{same} of {compared} are the same")
     server.stop()

@@ -179,7 +179,8 @@ CAMBER_FN camber_u32 camber_halvings(const camber_walk *w, const camber_projecti
     return count;
 }
 
-/* Returns the i-th end of the pieces of a segment that is halved `count` times; from b to a they are the same. */
+/* Returns the i-th end of the pieces of a segment that is halved `count` times; from b to a they are the same. Those
+ * that are not a or b have no point. */
 CAMBER_FN camber_kept_point camber_piece_end(const camber_walk *w, const camber_projection *p, camber_kept_point a,
                                              camber_kept_point b, camber_u32 count, camber_u32 i) {
     if (i == 0u || i >> count)
@@ -193,11 +194,17 @@ CAMBER_FN camber_kept_point camber_piece_end(const camber_walk *w, const camber_
         x1 = later ? x1 : x;
         y1 = later ? y1 : y;
     }
-    camber_kept_point at = camber_kept_point_at(p, a.point, (camber_i32)x0, (camber_i32)y0);
+    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, (camber_i32)x0, (camber_i32)y0);
 #if CAMBER_WALK_ARC_LENGTHS
     at.along = w->lengths ? camber_along_at(w, a, b, (camber_i32)x0, (camber_i32)y0) : 0.0f;
 #endif
     return at;
+}
+
+/* Returns the end of the first piece from a point towards another one; `to` itself if that is no point. */
+CAMBER_FN camber_kept_point camber_first_piece(const camber_walk *w, const camber_projection *p, camber_kept_point from,
+                                               camber_kept_point to) {
+    return to.point != CAMBER_NO_POINT ? camber_piece_end(w, p, from, to, camber_halvings(w, p, from, to), 1u) : to;
 }
 
 /* ---- Cut segments ---- */
@@ -372,11 +379,10 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
     } else {
         other = camber_find_next(w, p, w->first, seam);
     }
-    const camber_u32 halvings = other.point != CAMBER_NO_POINT ? camber_halvings(w, p, seam, other) : 0u;
     if (camber_cuts(p))
         camber_put_cut(w, p, seam, camber_pull(w, p, other, seam), 0u);
     else
-        camber_put_kept(w, p, camber_piece_end(w, p, seam, other, halvings, 1u), 0u);
+        camber_put_kept(w, p, camber_first_piece(w, p, seam, other), 0u);
 }
 
 /* ---- Areas ---- */
@@ -429,37 +435,90 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* ---- Points ---- */
 
-/* Writes what the window has of a piece of a segment. is_last: to is a point of the line, which writes its own slot. */
-CAMBER_FN void camber_put_piece(camber_walk *w, const camber_projection *p, camber_kept_point from, camber_kept_point to,
-                                camber_u32 is_last) {
-    const camber_u32 real = camber_real_info(w), outside = from.beyond & to.beyond;
-    if (outside == 1u && (w->word & CAMBER_STRETCH_AREA))
-        camber_put_left(w, p, from, to);
-    if (outside)
+/* The piece of a segment from a to b that begins at the given end. */
+typedef struct camber_piece {
+    camber_kept_point a, b, from, to;
+    camber_u32 halvings, at, end;
+} camber_piece;
+
+/* Writes the point at which a line comes into the window. So that the joins at both ends of the piece are those of the
+ * whole line, the point before it is written, too, unless the line begins here. If the piece before touches the window
+ * as well, it has written this point; but a ring's seam divides the two. Areas have no joins. */
+CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, const camber_piece *piece) {
+    const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
+    const camber_u32 is_first = piece->at == 0u && piece->a.point == w->first;
+    if (w->word & CAMBER_STRETCH_AREA) {
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT);
         return;
-    if (from.beyond)
-        camber_put_kept(w, p, from, real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT);
-    if (to.beyond)
-        camber_put_kept(w, p, to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
-    else if (!is_last)
-        camber_put_kept(w, p, to, real);
+    }
+    if (is_first && !is_ring) {
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST);
+        return;
+    }
+    const camber_kept_point before =
+        piece->at > 0u ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at - 1u)
+                       : camber_first_piece(w, p, piece->a,
+                                            camber_find_before(w, p, is_first ? w->end - 1u : piece->a.point));
+    if (before.beyond & piece->from.beyond) {
+        camber_put_kept(w, p, before,
+                        real | CAMBER_POINT_FIRST | (before.point != w->first || is_ring ? CAMBER_POINT_CUT : 0u));
+        camber_put_kept(w, p, piece->from, real);
+    } else if (is_first) {
+        camber_put_kept(w, p, before, 0u);
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST | CAMBER_POINT_RING);
+    }
 }
 
-/* Writes the pieces of a segment. Where several in a row are outside the window, they are passed at once. */
+/* Writes the point at which a line leaves the window, and in the same way the point after it. */
+CAMBER_FN void camber_put_end(camber_walk *w, const camber_projection *p, const camber_piece *piece) {
+    const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
+    const camber_u32 is_last = piece->at + 1u == piece->end && piece->b.point + 1u == w->end;
+    if (w->word & CAMBER_STRETCH_AREA) {
+        camber_put_kept(w, p, piece->to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
+        return;
+    }
+    if (is_last && !is_ring) {
+        camber_put_kept(w, p, piece->to, real | CAMBER_POINT_LAST);
+        return;
+    }
+    const camber_kept_point after =
+        piece->at + 1u < piece->end
+            ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at + 2u)
+            : camber_first_piece(w, p, piece->b,
+                                 camber_find_next(w, p, (is_last ? w->first : piece->b.point) + 1u, piece->b));
+    const camber_u32 is_end = after.beyond & piece->to.beyond, is_seam = !is_end && is_last;
+    camber_put_kept(w, p, piece->to, real | (is_seam ? CAMBER_POINT_LAST | CAMBER_POINT_RING : 0u));
+    if (is_end)
+        camber_put_kept(w, p, after,
+                        real | CAMBER_POINT_LAST | (after.point + 1u != w->end || is_ring ? CAMBER_POINT_CUT : 0u));
+    else if (is_seam)
+        camber_put_kept(w, p, after, 0u);
+}
+
+/* Writes the pieces of a segment that touch the window. Where several in a row do not, they are passed at once. */
 CAMBER_FN void camber_put_pieces(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    const camber_u32 count = a.beyond & b.beyond ? 0u : camber_halvings(w, p, a, b), end = 1u << count;
-    camber_kept_point from = a;
-    camber_u32 at = 0, more = end;
-    while (at < end) {
-        const camber_kept_point to = camber_piece_end(w, p, a, b, count, at + more);
-        if (more > 1u && !(from.beyond & to.beyond)) {
+    camber_piece piece = {a, b, a, b, 0, 0, 1};
+    if (!(a.beyond & b.beyond))
+        piece.halvings = camber_halvings(w, p, a, b);
+    piece.end = 1u << piece.halvings;
+    for (camber_u32 more = piece.end; piece.at < piece.end;) {
+        piece.to = camber_piece_end(w, p, a, b, piece.halvings, piece.at + more);
+        const camber_u32 outside = piece.from.beyond & piece.to.beyond;
+        if (more > 1u && !outside) {
             more /= 2u;
             continue;
         }
-        camber_put_piece(w, p, from, to, at + more == end);
-        from = to;
-        at += more;
-        more = at & (0u - at);
+        if (outside == 1u && (w->word & CAMBER_STRETCH_AREA))
+            camber_put_left(w, p, piece.from, piece.to);
+        if (!outside && piece.from.beyond)
+            camber_put_beginning(w, p, &piece);
+        if (!outside && piece.to.beyond)
+            camber_put_end(w, p, &piece);
+        else if (!outside && piece.at + 1u < piece.end)
+            camber_put_kept(w, p, piece.to, camber_real_info(w));
+        piece.from = piece.to;
+        piece.at += more;
+        more = piece.at & (0u - piece.at);
     }
 }
 

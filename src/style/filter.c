@@ -228,8 +228,10 @@ static bool find_shortcut(camber_compiler *c, camber_expression *filter) {
         c->style->schema.wants_all_properties || !list_properties(filter, shortcut))
         return true;
     camber_value *absent = camber_alloc_zero(c->context, c->style->schema.property_count, sizeof *absent);
-    if (!absent)
-        return camber_compiler_fail_memory(c);
+    if (!absent) { /* camber_alloc has logged it */
+        c->status = CAMBER_ERROR_MEMORY;
+        return false;
+    }
     for (int i = 0; i < 3; i++)
         shortcut->results[i] = evaluate(filter, 0.0, &(camber_feature_view){.values = absent, .geometry_type = types[i]});
     shortcut->exists = true;

@@ -27,8 +27,8 @@
 /* Points that a work-item walks, and work-items in a group. */
 #define CAMBER_CULL_CHUNK 64
 #define CAMBER_WALKERS (CAMBER_BLOCK / 8)
-/* Longer segments are halved. Floats are exact to 1/4096 px up to 4096 px: so far reaches a piece that touches a window of
- * 2048 px and the margin around it. */
+/* Longer segments are halved. Floats are exact to 1/4096 px up to 4096 px: so far reaches a piece that touches a window
+ * of 2048 px and the margin around it. */
 #define CAMBER_PIECE_PX 1536.0f
 /* If segments are cut, points farther from the window than this are moved closer. */
 #define CAMBER_NEAR_PX 4096.0f
@@ -436,15 +436,15 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 /* ---- Points ---- */
 
 /* The piece of a segment from a to b that begins at the given end. */
-typedef struct camber_piece {
+typedef struct camber_segment_piece {
     camber_kept_point a, b, from, to;
     camber_u32 halvings, at, end;
-} camber_piece;
+} camber_segment_piece;
 
 /* Writes the point at which a line comes into the window. So that the joins at both ends of the piece are those of the
  * whole line, the point before it is written, too, unless the line begins here. If the piece before touches the window
  * as well, it has written this point; but a ring's seam divides the two. Areas have no joins. */
-CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, const camber_piece *piece) {
+CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, const camber_segment_piece *piece) {
     const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
     const camber_u32 is_first = piece->at == 0u && piece->a.point == w->first;
     if (w->word & CAMBER_STRETCH_AREA) {
@@ -456,9 +456,9 @@ CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, 
         return;
     }
     const camber_kept_point before =
-        piece->at > 0u ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at - 1u)
-                       : camber_first_piece(w, p, piece->a,
-                                            camber_find_before(w, p, is_first ? w->end - 1u : piece->a.point));
+        piece->at > 0u
+            ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at - 1u)
+            : camber_first_piece(w, p, piece->a, camber_find_before(w, p, is_first ? w->end - 1u : piece->a.point));
     if (before.beyond & piece->from.beyond) {
         camber_put_kept(w, p, before,
                         real | CAMBER_POINT_FIRST | (before.point != w->first || is_ring ? CAMBER_POINT_CUT : 0u));
@@ -470,7 +470,7 @@ CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, 
 }
 
 /* Writes the point at which a line leaves the window, and in the same way the point after it. */
-CAMBER_FN void camber_put_end(camber_walk *w, const camber_projection *p, const camber_piece *piece) {
+CAMBER_FN void camber_put_end(camber_walk *w, const camber_projection *p, const camber_segment_piece *piece) {
     const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
     const camber_u32 is_last = piece->at + 1u == piece->end && piece->b.point + 1u == w->end;
     if (w->word & CAMBER_STRETCH_AREA) {
@@ -497,7 +497,7 @@ CAMBER_FN void camber_put_end(camber_walk *w, const camber_projection *p, const 
 
 /* Writes the pieces of a segment that touch the window. Where several in a row do not, they are passed at once. */
 CAMBER_FN void camber_put_pieces(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    camber_piece piece = {a, b, a, b, 0, 0, 1};
+    camber_segment_piece piece = {a, b, a, b, 0, 0, 1};
     if (!(a.beyond & b.beyond))
         piece.halvings = camber_halvings(w, p, a, b);
     piece.end = 1u << piece.halvings;
@@ -553,8 +553,8 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         if (seam && begins)
             camber_walk_put_sentinel(w, p, 1u, a);
         camber_put_kept(w, p, a,
-                        camber_real_info(w) | (begins ? CAMBER_POINT_FIRST : 0u) |
-                            (has_next ? 0u : CAMBER_POINT_LAST) | seam);
+                        camber_real_info(w) | (begins ? CAMBER_POINT_FIRST : 0u) | (has_next ? 0u : CAMBER_POINT_LAST) |
+                            seam);
         if (seam && !begins)
             camber_walk_put_sentinel(w, p, 0u, a);
     }

@@ -292,9 +292,8 @@ camber_status camber_importance_weigh_by(camber_context *context, const camber_i
             return camber_fail(context, CAMBER_ERROR_INPUT,
                                "importance: offset %zu is %zu, and the one before it is %zu; they must ascend", i + 1,
                                desc->offsets[i + 1], desc->offsets[i]);
-    weighing w = {.context = context,
-                  .desc = desc,
-                  .point_count = desc->offsets[desc->polyline_count] - desc->offsets[0]};
+    weighing w = {
+        .context = context, .desc = desc, .point_count = desc->offsets[desc->polyline_count] - desc->offsets[0]};
     w.thread_count = w.point_count < FEW_POINTS ? 1 : desc->threads;
     camber_threads_run(w.thread_count, weigh_part, &w);
     return share_nodes(&w);

@@ -55,10 +55,10 @@ typedef struct camber_match_label {
 /* The most properties that a filter with a shortcut reads. */
 enum { CAMBER_SHORTCUT_PROPERTIES = 24 };
 
-/* What a filter gives all features without any of its properties, for each type of geometry. Most features lack what
- * most filters read, and looking for the properties is quicker than evaluating. */
+/* The results of a filter for all features that have none of its properties, by type of geometry. Most features lack
+ * what most filters read, and looking for the properties is quicker than evaluating. */
 typedef struct camber_filter_shortcut {
-    bool exists; /* false for filters that read something else, such as the zoom */
+    bool exists;     /* false for filters that read something else, such as the zoom */
     bool results[3]; /* points, lines, polygons */
     uint16_t count, properties[CAMBER_SHORTCUT_PROPERTIES];
 } camber_filter_shortcut;

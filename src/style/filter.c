@@ -233,7 +233,8 @@ static bool find_shortcut(camber_compiler *c, camber_expression *filter) {
         return false;
     }
     for (int i = 0; i < 3; i++)
-        shortcut->results[i] = evaluate(filter, 0.0, &(camber_feature_view){.values = absent, .geometry_type = types[i]});
+        shortcut->results[i] =
+            evaluate(filter, 0.0, &(camber_feature_view){.values = absent, .geometry_type = types[i]});
     shortcut->exists = true;
     camber_free(c->context, absent);
     return true;

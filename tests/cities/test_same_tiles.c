@@ -97,8 +97,8 @@ static void compare_zoom(const city_map *map, camber_tiles_engine *whole, camber
     assert_true(large.tiles);
     for (uint32_t y = 0; y < large.side; y += small.side)
         for (uint32_t x = 0; x < large.side; x += small.side) {
-            assert_int_equal(
-                camber_tiles_engine_draw(parts, zoom, large.column + x, large.row + y, small_rgba, &small), CAMBER_OK);
+            assert_int_equal(camber_tiles_engine_draw(parts, zoom, large.column + x, large.row + y, small_rgba, &small),
+                             CAMBER_OK);
             compare(&small, &large, d);
         }
     free(small_rgba);

@@ -344,16 +344,11 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force),
-        cmocka_unit_test(test_known_lines),
-        cmocka_unit_test(test_rings),
-        cmocka_unit_test(test_shared_nodes),
-        cmocka_unit_test(test_many_nodes),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_part_of_a_set),
-        cmocka_unit_test(test_worst_case_is_bounded),
-        cmocka_unit_test(test_not_numbers),
-        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_brute_force),   cmocka_unit_test(test_known_lines),
+        cmocka_unit_test(test_rings),         cmocka_unit_test(test_shared_nodes),
+        cmocka_unit_test(test_many_nodes),    cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_part_of_a_set), cmocka_unit_test(test_worst_case_is_bounded),
+        cmocka_unit_test(test_not_numbers),   cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

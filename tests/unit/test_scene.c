@@ -669,7 +669,8 @@ static void test_clipping_keeps_lines_in_place(void **state) {
     camber_scene *scene = make_scene(&t, view);
     const camber_lines *lines = camber_scene_get_lines(scene);
     assert_int_equal(lines->polyline_count, 1);
-    /* In few pieces of many, which are short; one of them passes the centre as closely as a step of the network allows. */
+    /* In few pieces of many, which are short; one of them passes the centre as closely as a step of the network allows.
+     */
     assert_in_range(lines->point_count, 3, 6);
     double whole = 0.0, least = INFINITY;
     for (size_t i = 1; i < lines->point_count; i++) {

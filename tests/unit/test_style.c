@@ -1141,7 +1141,7 @@ static void test_damage(void **state) {
     teardown(&f);
 }
 
-/* What filters give features that lack what they read, by type of geometry; a null that a feature has is no lack. */
+/* Filters of features that lack what is read, by type of geometry; a null that a feature has is no lack. */
 static void test_absent_properties(void **state) {
     (void)state;
     static const struct {
@@ -1302,14 +1302,28 @@ static void test_sets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),        cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),         cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes),     cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_left_out),    cmocka_unit_test(test_filter_by_zoom), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),          cmocka_unit_test(test_nesting),
-        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),     cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_roads),
+        cmocka_unit_test(test_builtin),
+        cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills),
+        cmocka_unit_test(test_circle),
+        cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_odd_dashes),
+        cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_left_out),
+        cmocka_unit_test(test_filter_by_zoom),
+        cmocka_unit_test(test_states),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_nesting),
+        cmocka_unit_test(test_many),
+        cmocka_unit_test(test_many_names),
+        cmocka_unit_test(test_damage),
         cmocka_unit_test(test_absent_properties),
-        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),  cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

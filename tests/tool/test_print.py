@@ -105,7 +105,10 @@ heads = dict(chunks(png))
 width, height = struct.unpack(">II", heads[b"IHDR"][:8])
 expect((width, height) == (round(105 / MM * DPI), round(148 / MM * DPI)), f"A6 has {width} x {height} px")
 expect(struct.unpack(">IIB", heads[b"pHYs"]) == (5906, 5906, 1), "a PNG tells its density")
-expect(b"pHYs" not in dict(chunks(render("plain.png", "--size", "64x64"))), "a PNG without paper tells none")
+for ratio, per_metre in ("1", 3780), ("2", 7559):
+    plain = dict(chunks(render("plain.png", "--size", "64x64", "--ratio", ratio)))
+    expect(struct.unpack(">IIB", plain[b"pHYs"]) == (per_metre, per_metre, 1),
+           "a PNG without paper has 96 px per inch, times its ratio")
 dense = dict(chunks(render("dense.png", "--size", "64x64", "--dpi", "300")))
 expect(struct.unpack(">IIB", dense[b"pHYs"]) == (11811, 11811, 1) and struct.unpack(">I", dense[b"IHDR"][:4]) == (64,),
        "--dpi alone is the density of a picture")

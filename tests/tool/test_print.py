@@ -157,6 +157,31 @@ if have("pdftocairo"):
     mean, far = difference(picture, os.path.join(FOLDER, "drawn.png"))
     expect(mean < 0.6 and far < 0.002, f"a PDF differs by {mean:.3f} levels, and far in {far:.5f}")
 
+# ---- Every label of a PDF is found ----
+
+NAMES = ["Île Saint-Honorat", "Groß-Gerau", "Αθήνα", "Санкт-Петербург", "Łódź-Żabieniec", "office fluffy"]
+PLACES = [(f"{NAMES[i % 6]} {i}", {"type": "Point", "coordinates": [0.02 * (i % 6) + 0.01, 0.006 * (i // 6) + 0.004]})
+          for i in range(60)]
+PLACES += [(f"Rue de l’Église {i}", {"type": "LineString", "coordinates": [[0.002, 0.07 + 0.008 * i], [
+    0.06, 0.074 + 0.01 * i], [0.118, 0.071 + 0.008 * i]]}) for i in range(5)]
+LABELS = {"version": 8, "sources": {"names": {"type": "geojson", "data": {"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"name": name}, "geometry": geometry} for name, geometry in PLACES]}}}, "layers": [
+        {"id": "points", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "Point"],
+         "layout": {"text-field": ["get", "name"], "text-size": 11, "text-max-width": 30}},
+        {"id": "lines", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "LineString"],
+         "layout": {"text-field": ["get", "name"], "text-size": 12, "symbol-placement": "line-center",
+                    "text-font": ["Noto Sans Italic"]}}]}
+if have("pdftotext"):
+    with open(os.path.join(FOLDER, "labels.json"), "w", encoding="utf-8") as file:
+        json.dump(LABELS, file)
+    named = os.path.join(FOLDER, "labels.pdf")
+    told = run("render", "--style", os.path.join(FOLDER, "labels.json"), "-o", named, "--size", "900x900", "--bbox",
+               "0,0,0.12,0.12", "--json")
+    expect(json.loads(told.stdout)["labels"] == len(PLACES), f"all labels are placed: {told.stdout}")
+    text = subprocess.run(["pdftotext", named, "-"], capture_output=True, text=True).stdout
+    for name, _ in PLACES:
+        expect(name in " ".join(text.split()), f"{name} is found")
+
 # ---- SVG ----
 
 svg = render("sheet.svg", *VIEW)

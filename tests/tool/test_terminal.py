@@ -92,6 +92,7 @@ def test_results():
     said = on_terminal("validate", "--only", "roads", "--method", "strip", "--windows", 8, "--draw", "cl", both=True)
     kept, whiles = shown(said)
     check(any(re.fullmatch(r"checking        \[#* *\] +\d+ %  \d+ of \d+ scenes.*", line) for line in whiles), said)
+    check(not any(line.startswith("drawing") for line in whiles), "one bar, and not that of each picture")
     results = [line for line in kept if line.startswith("ok ")]
     check(results and kept[0] == "TAP version 14" and kept[-1].startswith("validate: "), said)
     check(not any("checking" in line for line in kept), said)

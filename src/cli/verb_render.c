@@ -186,13 +186,24 @@ static void print_times(const job *j) {
     camber_session_say_memory(j->session);
 }
 
+/* Says how large the picture is: a sheet in mm, other pictures in px. */
+static void put_size(const job *j, char *text, size_t size) {
+    const camber_options *options = j->session->options;
+    uint32_t width, height;
+    find_size(j, &width, &height);
+    if (camber_format_is_vector(options->format))
+        snprintf(text, size, "%.4g x %.4g mm", options->paper_width_mm, options->paper_height_mm);
+    else
+        snprintf(text, size, "%s x %s px", camber_figure_count(width).text, camber_figure_count(height).text);
+}
+
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
-    uint32_t width, height;
-    find_size(j, &width, &height);
+    char size[128];
+    put_size(j, size, sizeof size);
     if (report->verbose)
         print_counts(j, &scene);
     print_rings(j);
@@ -203,8 +214,7 @@ static void print_text(const job *j) {
     if (j->input.attribution)
         camber_report_say(report, "%s", j->input.attribution);
     camber_report_done(report, path[0] == '-' && !path[1] ? "picture" : path, j->written_bytes, j->total_ms,
-                       "%s x %s px, zoom %.2f at %.5f, %.5f", camber_figure_count(width).text,
-                       camber_figure_count(height).text, scene.zoom, scene.longitude, scene.latitude);
+                       "%s, zoom %.2f at %.5f, %.5f", size, scene.zoom, scene.longitude, scene.latitude);
 }
 
 int camber_verb_render(camber_session *session) {

@@ -157,6 +157,9 @@ if have("pdftocairo"):
     mean, far = difference(picture, os.path.join(FOLDER, "drawn.png"))
     expect(mean < 0.6 and far < 0.002, f"a PDF differs by {mean:.3f} levels, and far in {far:.5f}")
 
+said = run("render", MONACO, "-o", os.path.join(FOLDER, "size.pdf"), *VIEW).stderr
+expect("size.pdf: 105 x 148 mm, zoom 15.00 at " in said, said)
+
 # ---- Every label of a PDF is found ----
 
 NAMES = ["Île Saint-Honorat", "Groß-Gerau", "Αθήνα", "Санкт-Петербург", "Łódź-Żabieniec", "office fluffy"]

@@ -290,8 +290,8 @@ static void finds_maps(void **state) {
     assert_int_equal(camber_route_parse(&two, "GET", "/styles/dark/0/0/0.png", &request), 200);
     assert_int_equal(request.map, 1);
     static const char *const styles[] = {"styles"}; /* this map's own paths have precedence */
-    assert_int_equal(camber_route_parse(&(camber_route_limits){4, 2048, styles, 1}, "GET", "/styles/0/0/0.png", &request),
-                     200);
+    assert_int_equal(
+        camber_route_parse(&(camber_route_limits){4, 2048, styles, 1}, "GET", "/styles/0/0/0.png", &request), 200);
     assert_int_equal(camber_route_parse(&LIMITS, "GET", "/styles/a/0/0/0.png", &request), 404);
     assert_int_equal(parse("/static/auto/1x1.jpeg", &request), 400);
     assert_non_null(strstr(request.reason, "JPEG"));

@@ -122,4 +122,5 @@ def main():
         write(*seas(coasts, places, box))
 
 
-main()
+if __name__ == "__main__":
+    main()

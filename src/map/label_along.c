@@ -146,8 +146,8 @@ camber_track_point camber_label_track_point(const camber_label_track *track, dou
         length = camber_length(x, y);
     }
     const double cosine = x / length, sine = y / length;
-    return (camber_track_point){at[0] - sine * track->side * track->across, at[1] + cosine * track->side * track->across,
-                                cosine, sine};
+    return (camber_track_point){at[0] - sine * track->side * track->across,
+                                at[1] + cosine * track->side * track->across, cosine, sine};
 }
 
 /* Computes the direction from the first glyph to the last, as it is seen; for a text of one glyph, the direction of its

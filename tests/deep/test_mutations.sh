@@ -389,7 +389,8 @@ mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[
 mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++) {
         const ulong cells = sets->partial[k] & ~shut, nears' 'k + 1u < count; k++) {
         const ulong cells = sets->partial[k] & ~shut, nears'
-mutant strip kernels/rasterize_sixteen.cl "translucent lines that fill cells" 'c->now.a != 1.0f' 'c->now.a == 9.0f'
+mutant strip kernels/rasterize_sixteen.cl "cells filled by segments that only touch them" 'f->cells |= cells & inside' \
+    'f->cells |= cells'
 mutant strip kernels/rasterize_sixteen.cl "caps at both ends" '(p->goes_on_b ? none : at_b)' '(p->goes_on_a ? none : at_b)'
 mutant strip kernels/rasterize_sixteen.cl "flat joins taken for caps" 'joined_a | joined_b' 'joined_a'
 mutant strip kernels/rasterize_sixteen.cl "caps at the other end" 'p->flat_b - at->past_b' 'p->flat_a - at->past_b'

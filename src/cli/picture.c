@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double CSS_PX_PER_INCH = 96.0;
+
 typedef struct writer {
     camber_report *report;
     camber_context *context;
@@ -36,6 +38,11 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     return w->status == CAMBER_OK;
 }
 
+/* Returns the px per inch that a PNG tells. Without --dpi a CSS px is 1/96 inch, as in a PDF of the same picture. */
+static double dots_per_inch(const camber_options *options) {
+    return isnan(options->dpi) ? CSS_PX_PER_INCH * options->view.ratio : options->dpi;
+}
+
 static camber_status begin(writer *w, const camber_options *options, bool opaque, const char *attribution) {
     char software[64];
     snprintf(software, sizeof software, "camber %s", camber_version());
@@ -47,7 +54,7 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
                                       .opaque = opaque,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
+                                      .dpi = dots_per_inch(options)};
         return camber_png_create(w->context, &desc, camber_output_sink(w->output), &w->png);
     }
     const camber_encoder_desc desc = {.encoding = camber_format_encoding(options->format),
@@ -55,7 +62,7 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
                                       .quality = (int)options->quality,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
+                                      .dpi = dots_per_inch(options)};
     w->rgba = malloc(4 * (size_t)w->width * w->height);
     return w->rgba ? camber_encoder_create(w->context, &desc, &w->encoder) : CAMBER_ERROR_MEMORY;
 }

@@ -42,7 +42,10 @@ use() { # TREE
     camber --version
     camber info | tee info
     grep 'kernels compiled ahead' info
-    draw camber "$tree" "$PWD/drawn"
+    local said=$PWD/said # what is bundled knows what the system configures
+    draw camber "$tree" "$PWD/drawn" 2>"$said"
+    cat "$said" >&2
+    if grep -i fontconfig "$said"; then exit 1; fi
     camber render "$tree/tests/data/monaco/monaco.osm.pbf" --paper A5 -o monaco.pdf
     head -c 4 monaco.pdf | grep PDF
     camber tessellate streets.geojson --style roads -o streets.glb # areas need GLU, which needs GL

@@ -668,7 +668,7 @@ def check_packages(tree):
     used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
     used |= set(re.findall(r"^ *camber_optional_library\(\w+ CAMBER_\w+ (\S+)", cmake, re.M))
     used |= set(re.findall(r"\bfind_program\(\w+ ([\w-]+) REQUIRED", cmake))
-    used.add("Leaflet")
+    used |= {"Leaflet"} if tree.has("src/serve/page.cmake") else set()
     yield from check_options(tree, cmake)
     for name in sorted(used - set(LIBRARIES)):
         yield Finding("CMakeLists.txt", 1, "%s is new to the packages" % name,

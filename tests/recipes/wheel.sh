@@ -30,6 +30,7 @@ use() { # TREE
     local tree=$1 package status=0
     python3 -m venv --system-site-packages env
     . env/bin/activate
+    test -e "$tree"/dist/camber-*-manylinux_2_28_"$(uname -m)".whl # what docs/releasing.md promises
     pip -q install --no-index --disable-pip-version-check "$tree"/dist/camber-*.whl
     package=$(python -c 'import importlib.util, os; print(os.path.dirname(importlib.util.find_spec("camber").origin))')
     # Everything comes from the wheel but the C library.

@@ -23,6 +23,7 @@ mkdir "$POCL_CACHE_DIR"
 cd "$tmp/out" || exit 1
 checks=0
 failures=0
+peaks=()
 
 fail() {
     failures=$((failures + 1))
@@ -391,6 +392,15 @@ adds_up
 expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
 has "$tmp/stdout" '"draw_calls": 0,' '"start_ms": [0-9]'
 rm -f calls.png
+# A picture of up to 2^22 pixels is drawn where it is compressed, without a copy of its 16 MB in between.
+if [ -n "$faulty" ]; then
+    for size in 2048x2048 2049x2048; do
+        expect 0 "memory of $size" render "$osm" --no-labels -o large.png -f --size $size --draw cl --json
+        peaks+=("$(sed -n 's/.*"peak_rss_bytes": \([0-9]*\).*/\1/p' "$tmp/stdout")")
+    done
+    [ $((peaks[0] + (4 << 20))) -lt "${peaks[1]}" ] || fail "as much as with a copy: ${peaks[*]} bytes"
+    rm large.png
+fi
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))

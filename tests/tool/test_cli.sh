@@ -392,6 +392,11 @@ adds_up
 expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
 has "$tmp/stdout" '"draw_calls": 0,' '"start_ms": [0-9]'
 rm -f calls.png
+# A system without fontconfig's configuration has no fonts to find, and nothing is said of that.
+run env FONTCONFIG_FILE="$tmp/none" "$tool" render "$osm" -qfo calls.png --size 600x400
+verify 0
+[ ! -s "$tmp/stderr" ] || fail "says $(head -c 300 "$tmp/stderr")"
+rm -f calls.png
 # A picture of up to 2^22 pixels is drawn where it is compressed, without a copy of its 16 MB in between.
 if [ -n "$faulty" ]; then
     for size in 2048x2048 2049x2048; do

@@ -81,6 +81,10 @@ GPX
     camber render track.gpx -o track.png
     od -An -c -N4 track.png | grep 'P   N   G'
     camber info | grep 'GDAL  *GDAL 3'
+    # GDAL brought the system's configuration of fontconfig.
+    test -e /etc/fonts/fonts.conf
+    camber render drawn/streets.geojson -o streets.png 2>said
+    if grep -i fontconfig said; then exit 1; fi
 }
 
 "$action" "$@"

@@ -1,7 +1,8 @@
 /* How many threads are used, and starting them.
  *
- * Input: the process's affinity, the CPU quotas of its control groups, and what the caller asks for. Output: a count, and
- * threads with numbers. Main idea: whoever cannot get as many threads as wanted does the rest of the work itself. */
+ * Input: the process's affinity, the CPU quotas of its control groups, and what the caller asks for. Output: a count,
+ * and threads with numbers. Main idea: whoever cannot get as many threads as wanted does the rest of the work itself.
+ */
 #define _GNU_SOURCE /* sched_getaffinity */
 
 #include "base/threads.h"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { SMALL_PX = 1 << 22 };
+static const double CSS_PX_PER_INCH = 96.0;
 
 typedef struct writer {
     camber_report *report;
@@ -42,6 +43,11 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     return w->status == CAMBER_OK;
 }
 
+/* Returns the px per inch that a PNG tells. Without --dpi a CSS px is 1/96 inch, as in a PDF of the same picture. */
+static double dots_per_inch(const camber_options *options) {
+    return isnan(options->dpi) ? CSS_PX_PER_INCH * options->view.ratio : options->dpi;
+}
+
 static camber_status begin(writer *w, const camber_options *options, bool opaque, const char *attribution) {
     char software[64];
     snprintf(software, sizeof software, "camber %s", camber_version());
@@ -53,7 +59,7 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
                                       .opaque = opaque,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
+                                      .dpi = dots_per_inch(options)};
         return camber_png_create(w->context, &desc, camber_output_sink(w->output), &w->png);
     }
     const camber_encoder_desc desc = {.encoding = camber_format_encoding(options->format),
@@ -61,7 +67,7 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
                                       .quality = (int)options->quality,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
+                                      .dpi = dots_per_inch(options)};
     const size_t bytes = 4 * (size_t)w->width * w->height, rest = bytes % CAMBER_PIXELS_ALIGNMENT;
     w->rgba = aligned_alloc(CAMBER_PIXELS_ALIGNMENT, rest ? bytes + CAMBER_PIXELS_ALIGNMENT - rest : bytes);
     return w->rgba ? camber_encoder_create(w->context, &desc, &w->encoder) : CAMBER_ERROR_MEMORY;

@@ -406,6 +406,17 @@ if [ -n "$faulty" ]; then
     [ $((peaks[0] + (4 << 20))) -lt "${peaks[1]}" ] || fail "as much as with a copy: ${peaks[*]} bytes"
     rm large.png
 fi
+cat >"$tmp/in/refs.geojson" <<'JSON'
+{"type": "FeatureCollection", "features": [
+ {"type": "Feature", "properties": {"highway": "primary", "ref": "D 6007"},
+  "geometry": {"type": "LineString", "coordinates": [[7.40, 43.73], [7.44, 43.73]]}},
+ {"type": "Feature", "properties": {"highway": "primary", "ref": "Route de Menton"},
+  "geometry": {"type": "LineString", "coordinates": [[7.40, 43.72], [7.44, 43.72]]}}]}
+JSON
+expect 0 "a number has a shield, a name has none" render "$tmp/in/refs.geojson" --style city --center 7.42,43.725 \
+    --zoom 13 --size 300x300 -o refs.png -v
+says ' 1 label,'
+rm -f refs.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))

@@ -162,9 +162,9 @@ CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b)
 
 /* ---- Whole segments ---- */
 
-/* Whether segments are cut at the window. They are, too, if even a step is longer than a piece may be. */
+/* Whether segments are cut at the window. They are, too, if steps are so long that a piece might have none. */
 CAMBER_FN camber_u32 camber_cuts(const camber_projection *p) {
-    return p->slope > 0.0f || p->step_px > CAMBER_PIECE_PX ? 1u : 0u;
+    return p->slope > 0.0f || p->step_px > 0.5f * CAMBER_PIECE_PX ? 1u : 0u;
 }
 
 /* Returns how often a segment is halved. */
@@ -352,6 +352,18 @@ CAMBER_FN camber_kept_point camber_find_before(const camber_walk *w, const cambe
     return camber_kept_point_of(w, p, i);
 }
 
+/* Returns the kept point before `from` that the segment to it begins at: the first one on its pixel. */
+CAMBER_FN camber_kept_point camber_find_start(const camber_walk *w, const camber_projection *p, camber_u32 from) {
+    camber_kept_point start = camber_find_before(w, p, from);
+    while (start.point > w->first && start.beyond == 0u) {
+        const camber_kept_point before = camber_find_before(w, p, start.point);
+        if (!camber_same_pixel(before, start))
+            break;
+        start = before;
+    }
+    return start;
+}
+
 /* Returns the first kept point from `from` on that is on another pixel; `other` itself if there is none. */
 CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from,
                                              camber_kept_point other) {
@@ -458,7 +470,7 @@ CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, 
     const camber_kept_point before =
         piece->at > 0u
             ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at - 1u)
-            : camber_first_piece(w, p, piece->a, camber_find_before(w, p, is_first ? w->end - 1u : piece->a.point));
+            : camber_first_piece(w, p, piece->a, camber_find_start(w, p, is_first ? w->end - 1u : piece->a.point));
     if (before.beyond & piece->from.beyond) {
         camber_put_kept(w, p, before,
                         real | CAMBER_POINT_FIRST | (before.point != w->first || is_ring ? CAMBER_POINT_CUT : 0u));

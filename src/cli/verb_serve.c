@@ -77,6 +77,8 @@ struct reading {
     camber_report report;
     camber_input input;
     camber_style *dark;
+    camber_context *dark_context; /* the dark theme has a context and a report of its own while it is read */
+    camber_report dark_report;
     int dark_status;
     camber_tiles_reader *reader;
     json_t *about; /* an archive's metadata */
@@ -167,6 +169,7 @@ static void close_reading(void *owner) {
     camber_tiles_reader_destroy(it->reader);
     camber_input_close(&it->input);
     camber_style_destroy(it->dark);
+    camber_context_destroy(it->dark_context);
     json_decref(it->about);
     if (it->session == &it->own)
         camber_session_close(&it->own);
@@ -243,27 +246,39 @@ static void tell_nothing(const reading *it) {
         camber_report_warn(it->session->report, "nothing is drawn: %s", why);
 }
 
-/* Reads the dark theme beside the map: nothing but pictures needs it. */
 static void read_dark(void *user, size_t number) {
     reading *it = user;
     const char *base_path;
+    camber_session session = {.options = it->session->options, .report = &it->dark_report, .context = it->dark_context};
     (void)number;
-    it->dark_status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
+    it->dark_status = camber_input_make_style(&session, CAMBER_THEME_DARK, &it->dark, &base_path);
+}
+
+/* Reads the map, and the dark theme beside it on a second thread. That has its own context and report, because only one
+ * thread at a time may use those. If both fail, the map's failure is told. */
+static int read_themes(reading *it) {
+    camber_context_desc desc = it->session->context->desc;
+    camber_threads beside = {.count = 0};
+    it->dark_report = (camber_report){.keeps = true};
+    desc.log_user = &it->dark_report;
+    desc.progress = NULL;
+    if (camber_context_create(&desc, &it->dark_context) != CAMBER_OK)
+        return camber_report_status(it->session->report, CAMBER_ERROR_MEMORY);
+    camber_threads_start(&beside, 1, read_dark, it);
+    const bool started = beside.count > 0;
+    const int status = camber_input_open(&it->input, it->session);
+    camber_threads_join(&beside);
+    if (!started && status == CAMBER_EXIT_DONE)
+        read_dark(it, 0);
+    if (status == CAMBER_EXIT_DONE && it->dark_status != CAMBER_EXIT_DONE)
+        return camber_report_fail(it->session->report, it->dark_status, "%s", it->dark_report.error);
+    return status;
 }
 
 static int read_map(reading *it) {
     const camber_options *options = it->session->options;
-    camber_threads beside = {.count = 0};
     const bool themed = !options->style && options->theme < 0;
-    if (themed)
-        camber_threads_start(&beside, 1, read_dark, it);
-    const bool started = beside.count > 0;
-    int status = camber_input_open(&it->input, it->session);
-    camber_threads_join(&beside);
-    if (themed && !started)
-        read_dark(it, 0);
-    if (status == CAMBER_EXIT_DONE)
-        status = it->dark_status;
+    const int status = themed ? read_themes(it) : camber_input_open(&it->input, it->session);
     if (status != CAMBER_EXIT_DONE)
         return status;
     it->content.source = (camber_map_source){.features = it->input.features,

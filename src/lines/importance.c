@@ -121,9 +121,13 @@ static size_t find_node(node_table *table, const double *points, size_t point, u
     return point;
 }
 
+static bool has_room(const node_table *table) {
+    return table->used + BATCH < table->slot_count / 4 * 3;
+}
+
 /* If the table fills up, because its share has more hashes than others, it is rebuilt twice as large. */
 static bool grow_table(camber_context *context, node_table *table, const double *points) {
-    if (table->used + BATCH < table->slot_count / 4 * 3)
+    if (has_room(table))
         return true;
     uint32_t *old = table->slots;
     const size_t old_count = table->slot_count;
@@ -164,11 +168,28 @@ static inline void fetch(const void *at) {
 #endif
 }
 
+/* Where tables have their memory from. Threads take turns, because only one at a time may use a context. */
+typedef struct node_memory {
+    camber_context *context;
+    pthread_mutex_t lock;
+} node_memory;
+
+/* Makes room for a batch. */
+static bool make_room(node_memory *memory, node_table *table, const double *points) {
+    if (has_room(table) && table->repeat_count + BATCH <= table->repeat_capacity)
+        return true;
+    pthread_mutex_lock(&memory->lock);
+    const bool made = grow_table(memory->context, table, points) &&
+                      camber_grow(memory->context, &table->repeats, &table->repeat_capacity,
+                                  table->repeat_count + BATCH, sizeof *table->repeats);
+    pthread_mutex_unlock(&memory->lock);
+    return made;
+}
+
 /* Looks up a batch; the first point of each node collects the largest importance. */
-static camber_status look_up(camber_context *context, const double *points, node_batch *batch, node_table *table,
+static camber_status look_up(node_memory *memory, const double *points, node_batch *batch, node_table *table,
                              float *importance) {
-    if (!grow_table(context, table, points) || !camber_grow(context, &table->repeats, &table->repeat_capacity,
-                                                            table->repeat_count + BATCH, sizeof *table->repeats))
+    if (!make_room(memory, table, points))
         return CAMBER_ERROR_MEMORY;
     for (size_t k = 0; k < batch->count; k++)
         fetch(table->slots + ((size_t)batch->hashes[k] & (table->slot_count - 1)));
@@ -188,7 +209,7 @@ static camber_status look_up(camber_context *context, const double *points, node
     return CAMBER_OK;
 }
 
-static camber_status share_some(camber_context *context, const double *points, size_t count, node_share share,
+static camber_status share_some(node_memory *memory, const double *points, size_t count, node_share share,
                                 node_table *table, float *importance) {
     node_batch batch = {.count = 0};
     camber_status status = CAMBER_OK;
@@ -200,10 +221,10 @@ static camber_status share_some(camber_context *context, const double *points, s
         batch.hashes[batch.count] = hash;
         batch.count += is_of_share(hash, share);
         if (batch.count == BATCH)
-            status = look_up(context, points, &batch, table, importance);
+            status = look_up(memory, points, &batch, table, importance);
     }
     if (status == CAMBER_OK)
-        status = look_up(context, points, &batch, table, importance);
+        status = look_up(memory, points, &batch, table, importance);
     for (size_t i = 0; i < table->repeat_count && status == CAMBER_OK; i++)
         importance[table->repeats[i].point] = importance[table->repeats[i].node];
     return status;
@@ -217,7 +238,7 @@ static const size_t FEW_POINTS = (size_t)1 << 15;
 enum { MOST_SHARERS = 4 };
 
 typedef struct weighing {
-    camber_context *context;
+    node_memory memory;
     const camber_importance_desc *desc;
     size_t thread_count, point_count;
     size_t sharer_count, share_count, slot_count; /* of each share's table */
@@ -254,22 +275,25 @@ static void share_part(void *user, size_t number) {
     weighing *w = user;
     const size_t first = w->desc->offsets[0];
     node_table table = {.slot_count = w->slot_count};
-    camber_status status = CAMBER_OK;
-    if (!(table.slots = camber_alloc(w->context, table.slot_count, sizeof *table.slots)))
-        status = CAMBER_ERROR_MEMORY;
+    pthread_mutex_lock(&w->memory.lock);
+    table.slots = camber_alloc(w->memory.context, table.slot_count, sizeof *table.slots);
+    pthread_mutex_unlock(&w->memory.lock);
+    camber_status status = table.slots ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t share = number; share < w->share_count && status == CAMBER_OK; share += w->sharer_count)
-        status = share_some(w->context, w->desc->points + 2 * first, w->point_count,
+        status = share_some(&w->memory, w->desc->points + 2 * first, w->point_count,
                             (node_share){share, w->share_count}, &table, w->desc->importance + first);
-    camber_free(w->context, table.repeats);
-    camber_free(w->context, table.slots);
+    pthread_mutex_lock(&w->memory.lock);
+    camber_free(w->memory.context, table.repeats);
+    camber_free(w->memory.context, table.slots);
+    pthread_mutex_unlock(&w->memory.lock);
     w->statuses[number] = status;
 }
 
 static camber_status share_nodes(weighing *w) {
     const size_t count = w->point_count;
     if (count >= (size_t)1 << 31)
-        return camber_fail(w->context, CAMBER_ERROR_LIMIT, "%zu points are more than the limit of 2^31; read fewer",
-                           count);
+        return camber_fail(w->memory.context, CAMBER_ERROR_LIMIT,
+                           "%zu points are more than the limit of 2^31; read fewer", count);
     w->sharer_count = w->thread_count >= 4 ? 4 : w->thread_count >= 2 ? 2 : 1;
     w->slot_count = 4 * BATCH;
     w->share_count = w->sharer_count;
@@ -292,11 +316,15 @@ camber_status camber_importance_weigh_by(camber_context *context, const camber_i
             return camber_fail(context, CAMBER_ERROR_INPUT,
                                "importance: offset %zu is %zu, and the one before it is %zu; they must ascend", i + 1,
                                desc->offsets[i + 1], desc->offsets[i]);
-    weighing w = {
-        .context = context, .desc = desc, .point_count = desc->offsets[desc->polyline_count] - desc->offsets[0]};
+    weighing w = {.memory = {.context = context},
+                  .desc = desc,
+                  .point_count = desc->offsets[desc->polyline_count] - desc->offsets[0]};
     w.thread_count = w.point_count < FEW_POINTS ? 1 : desc->threads;
+    pthread_mutex_init(&w.memory.lock, NULL);
     camber_threads_run(w.thread_count, weigh_part, &w);
-    return share_nodes(&w);
+    const camber_status status = share_nodes(&w);
+    pthread_mutex_destroy(&w.memory.lock);
+    return status;
 }
 
 camber_status camber_importance_weigh(camber_context *context, const double *points, const size_t *offsets,

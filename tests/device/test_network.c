@@ -511,8 +511,7 @@ static void test_pieces_have_a_length(void **state) {
     camber_network *network =
         network_make(b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 2});
     for (double step_px = 300; step_px < 1700; step_px += 50) {
-        const camber_camera camera = {
-            .x = 0.5, .y = 0.5, .scale_px = step_px / step, .width = 12000, .height = 100};
+        const camber_camera camera = {.x = 0.5, .y = 0.5, .scale_px = step_px / step, .width = 12000, .height = 100};
         camber_lines lines;
         assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
         assert_int_equal(lines.polyline_count, 1);
@@ -534,8 +533,8 @@ static void test_pieces_from_the_same_pixel(void **state) {
     size_t joint = 0;
     for (int i = 0; i < 400; i++) {
         const double x = 0.5 + 1536 * px + i % 20 * step, y = 0.5 + 10 * px;
-        const double points[] = {x,   y,   x + step, y,   0.5, 0.5 - 1000 * px, 0.5 + 300 * px, y,
-                                 0.0, 0.0, 0.0,      0.0, 1.0, 1.0,             1.0,            1.0};
+        const double points[] = {x,   y,   x + step, y,   0.5, 0.5 - 1000 * px, 0.5 + 300 * px, y, 0.0, 0.0, 0.0,
+                                 0.0, 1.0, 1.0,      1.0, 1.0};
         const size_t offsets[] = {0, 4, 6, 8};
         camber_network *network =
             network_make(b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 3});

@@ -5,6 +5,8 @@
 #include "lines/importance.h"
 
 #include <math.h>
+#include <sched.h>
+#include <stdatomic.h>
 
 enum { MOST = 150 };
 
@@ -272,6 +274,44 @@ static void test_threads(void **state) {
     free(points);
 }
 
+/* An allocator that tells whether two threads were in it at once. */
+static void *reallocate_alone(void *user, void *block, size_t size_bytes) {
+    atomic_int *calls = user; /* calls that run, and those that were not alone */
+    calls[1] += atomic_fetch_add(calls, 1) > 0;
+    for (int i = 0; i < 100; i++)
+        (void)sched_yield();
+    void *made = size_bytes ? realloc(block, size_bytes) : NULL;
+    if (!size_bytes)
+        free(block);
+    atomic_fetch_sub(calls, 1);
+    return made;
+}
+
+/* Threads take turns with the context. */
+static void test_threads_allocate_in_turns(void **state) {
+    enum { COUNT = 1 << 17 };
+    double *points = malloc(2 * COUNT * sizeof *points);
+    float *importance = malloc(COUNT * sizeof *importance);
+    const size_t offsets[] = {0, COUNT / 2, COUNT};
+    unsigned seed = 5;
+    atomic_int calls[2] = {0};
+    camber_context *context = NULL;
+    (void)state;
+    assert_true(points && importance);
+    for (size_t i = 0; i < 2 * COUNT; i++)
+        points[i] = floor(100.0 * random_of(&seed));
+    assert_int_equal(camber_context_create(
+                         &(camber_context_desc){.reallocate = reallocate_alone, .allocator_user = calls}, &context),
+                     CAMBER_OK);
+    const camber_importance_desc desc = {points, offsets, 2, importance, 4};
+    for (int i = 0; i < 8; i++)
+        assert_int_equal(camber_importance_weigh_by(context, &desc), CAMBER_OK);
+    camber_context_destroy(context);
+    assert_int_equal(calls[1], 0);
+    free(importance);
+    free(points);
+}
+
 /* Offsets that do not begin at 0: what lies before is left alone. */
 static void test_part_of_a_set(void **state) {
     (void)state;
@@ -344,11 +384,17 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force),   cmocka_unit_test(test_known_lines),
-        cmocka_unit_test(test_rings),         cmocka_unit_test(test_shared_nodes),
-        cmocka_unit_test(test_many_nodes),    cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_part_of_a_set), cmocka_unit_test(test_worst_case_is_bounded),
-        cmocka_unit_test(test_not_numbers),   cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_brute_force),
+        cmocka_unit_test(test_known_lines),
+        cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_shared_nodes),
+        cmocka_unit_test(test_many_nodes),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_threads_allocate_in_turns),
+        cmocka_unit_test(test_part_of_a_set),
+        cmocka_unit_test(test_worst_case_is_bounded),
+        cmocka_unit_test(test_not_numbers),
+        cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "core.h"
 
 #include "kernels/join.h"
+#include "kernels/offset.h"
 #include "kernels/stroke_ends.h"
 
 #include <math.h>
@@ -259,11 +260,26 @@ static void test_counts_fit(void **state) {
     assert_true(most_vertices * CAMBER_BLOCK < 65536 && most_indices * CAMBER_BLOCK < 65536);
 }
 
+/* Beside a line points have steps; what is no number or too far for an integer stays as it is. */
+static void test_offset_steps(void **state) {
+    (void)state;
+    static const float as_it_is[] = {65537.25f, -65537.25f, 1e30f, -1e30f, INFINITY, -INFINITY};
+    for (size_t i = 0; i < sizeof as_it_is / sizeof *as_it_is; i++)
+        assert_true(camber_offset_round(as_it_is[i]) == as_it_is[i]);
+    assert_true(isnan(camber_offset_round(NAN)));
+    uint64_t seed = 3;
+    for (int i = 0; i < 10000; i++) {
+        const float px = (float)camber_random_between(&seed, -65536, 65536), rounded = camber_offset_round(px);
+        assert_true(fabsf(rounded - px) <= 1.0f / 4096 && fmodf(rounded * 4096, 1) == 0);
+        assert_true(camber_offset_round(-px) == -rounded);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_half_turn), cmocka_unit_test(test_packing),    cmocka_unit_test(test_degenerate_vectors),
         cmocka_unit_test(test_words),     cmocka_unit_test(test_thresholds), cmocka_unit_test(test_fan_triangles),
-        cmocka_unit_test(test_stubs),     cmocka_unit_test(test_counts_fit),
+        cmocka_unit_test(test_stubs),     cmocka_unit_test(test_counts_fit), cmocka_unit_test(test_offset_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -179,24 +179,37 @@ CAMBER_FN camber_u32 camber_halvings(const camber_walk *w, const camber_projecti
     return count;
 }
 
+/* A coordinate below 2^31 steps, and a part of a step in units of 2^-31. */
+typedef struct camber_fixed {
+    camber_u32 steps, part;
+} camber_fixed;
+
+CAMBER_FN camber_fixed camber_fixed_middle(camber_fixed a, camber_fixed b) {
+    const camber_u32 steps = a.steps + b.steps, part = (a.part + b.part) / 2u + (steps & 1u) * 0x40000000u;
+    const camber_fixed middle = {steps / 2u + (part >> 31), part & 0x7fffffffu};
+    return middle;
+}
+
 /* Returns the i-th end of the pieces of a segment that is halved `count` times; from b to a they are the same. Those
  * that are not a or b have no point. */
 CAMBER_FN camber_kept_point camber_piece_end(const camber_walk *w, const camber_projection *p, camber_kept_point a,
                                              camber_kept_point b, camber_u32 count, camber_u32 i) {
     if (i == 0u || i >> count)
         return i ? b : a;
-    camber_u32 x0 = (camber_u32)w->x[a.point], y0 = (camber_u32)w->y[a.point];
-    camber_u32 x1 = (camber_u32)w->x[b.point], y1 = (camber_u32)w->y[b.point];
+    camber_fixed x0 = {(camber_u32)w->x[a.point], 0u}, y0 = {(camber_u32)w->y[a.point], 0u};
+    camber_fixed x1 = {(camber_u32)w->x[b.point], 0u}, y1 = {(camber_u32)w->y[b.point], 0u};
     for (camber_u32 k = count; k-- > 0u;) {
-        const camber_u32 x = (x0 + x1) / 2u, y = (y0 + y1) / 2u, later = i >> k & 1u;
+        const camber_fixed x = camber_fixed_middle(x0, x1), y = camber_fixed_middle(y0, y1);
+        const camber_u32 later = i >> k & 1u;
         x0 = later ? x : x0;
         y0 = later ? y : y0;
         x1 = later ? x1 : x;
         y1 = later ? y1 : y;
     }
-    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, (camber_i32)x0, (camber_i32)y0);
+    const camber_i32 x = (camber_i32)(x0.steps + (x0.part >> 30)), y = (camber_i32)(y0.steps + (y0.part >> 30));
+    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, x, y);
 #if CAMBER_WALK_ARC_LENGTHS
-    at.along = w->lengths ? camber_along_at(w, a, b, (camber_i32)x0, (camber_i32)y0) : 0.0f;
+    at.along = w->lengths ? camber_along_at(w, a, b, x, y) : 0.0f;
 #endif
     return at;
 }

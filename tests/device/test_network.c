@@ -523,7 +523,7 @@ static void test_pieces_have_a_length(void **state) {
     camber_network_destroy(network);
 }
 
-/* Of two points on the same pixel, the first one decides into how many pieces the segment from there is halved, for the
+/* The first one of two points on the same pixel decides into how many pieces the segment from there is halved, for the
  * segment after that, too. */
 static void test_pieces_from_the_same_pixel(void **state) {
     network_devices *b = *state;

@@ -84,9 +84,12 @@ def test_routes():
         expect(status == 400 and b"at most 600 px (--max-size), and R 4 (--max-ratio)" in body, f"{path}: {status}: {body}")
         expect(server.get(path, port=server.metrics_port)[0] == 404, "pictures at the metrics' address")
     for path in ("/metrics", "/page/none.js", "/events",
-                 tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".jpg", "/favicon.ico", "/robots.txt"):
+                 tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".avif", "/favicon.ico", "/robots.txt"):
         status, headers, body = server.get(path)
         expect(status == 404 and body == b"404 not found\n", f"{path}: {status}")
+    for path in (tile + ".jpg", "/dark" + tile + "@2x.jpeg", "/static/0,0,0/9x9.jpg"):
+        status, headers, body = server.get(path)
+        expect(status == 400 and b"not drawn as JPEG; ask for .png" in body, f"{path}: {status}: {body}")
     metrics = server.get("/metrics", port=server.metrics_port)
     expect(metrics[0] == 200 and b'camber_requests_total{route="tile",status="200"}' in metrics[2], metrics)
     expect(server.get(tile + ".png", port=server.metrics_port)[0] == 404, "tiles at the metrics' address")

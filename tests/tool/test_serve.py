@@ -1117,7 +1117,8 @@ def test_labels():
         worst = difference(decode(server.get(f"/{zoom}/{x}/{y}@2x.png")[2]), decode(dense[zoom, x, y]))
         expect(worst <= 1, f"{zoom}/{x}/{y}@2x differs by {worst}")
     there = (COLUMN / 2 ** ZOOM * 360 - 180, math.degrees(math.atan(math.sinh(math.pi * (1 - 2 * ROW / 2 ** ZOOM)))))
-    for zoom, bearing, pitch in ((13, 0, 0), (13.4, 0, 0), (13, 40, 0), (13.5, -30, 50)):
+    # No whole zoom with north up: there render has the labels of tiles, and a server's pictures those of the view.
+    for zoom, bearing, pitch in ((13.2, 0, 0), (13.4, 0, 0), (13, 40, 0), (13.5, -30, 50)):
         drawn = []
         for options in ([], ["--no-labels"]):
             done = subprocess.run([TOOL, "render", "map.json", "-o", "view.png", "-q", "-f", "--size", "500x400",

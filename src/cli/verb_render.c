@@ -49,7 +49,6 @@ static int draw(job *j) {
         status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_input_warn_empty(&j->input, "nothing is drawn");
     camber_report_step(session->report, "tessellating", NULL, 0, 0);
     const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
@@ -59,6 +58,8 @@ static int draw(job *j) {
     j->tessellate_ms = camber_now_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
+    if (camber_mesh_get_info(j->mesh).bytes == 0) /* nothing in the picture, or a page of vectors, which has no mesh */
+        camber_input_warn_empty(&j->input, "nothing is drawn");
     status = vector ? camber_picture_write_page(&j->input, j->mesh, &j->output, &j->times)
                     : camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
     j->written_bytes = j->output.size_bytes;

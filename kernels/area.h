@@ -300,14 +300,10 @@ CAMBER_FN int camber_tile_edge_is_flat(const camber_tile_edge *e) {
     return e->y0 == e->y1;
 }
 
-/* Returns where an edge is at y, in px from the tile's left side, or as a column of cells. */
+/* Returns where an edge is at y, in px from the tile's left side. */
 CAMBER_FN float camber_edge_at(const camber_tile_edge *e, float y) {
     const float at = y < e->y0 ? e->y0 : y > e->y1 ? e->y1 : y;
     return e->x0 + (at - e->y0) * e->slope;
-}
-
-CAMBER_FN int camber_edge_column(float x) {
-    return x > 0.0f ? (x < (float)CAMBER_TILE_PX ? (int)(x * (1.0f / CAMBER_CELL_PX)) : CAMBER_TILE_CELLS) : 0;
 }
 
 /* Columns of cells; the last is before the first if there are none. */
@@ -315,17 +311,25 @@ typedef struct camber_cell_columns {
     int first, last;
 } camber_cell_columns;
 
-/* Computes the columns that an edge passes in a row of cells. */
-CAMBER_FN void camber_edge_columns(const camber_tile_edge *e, int row, camber_cell_columns *columns) {
-    const float top = (float)(CAMBER_CELL_PX * row), bottom = top + CAMBER_CELL_PX;
-    columns->first = 0;
-    columns->last = -1;
-    if (e->y1 <= top || e->y0 >= bottom)
-        return;
-    const int is_flat = camber_tile_edge_is_flat(e), upper = camber_edge_column(camber_edge_at(e, top));
-    const int lower = camber_edge_column(is_flat ? e->slope : camber_edge_at(e, bottom));
-    columns->first = CAMBER_LESS(upper, lower);
-    columns->last = CAMBER_LESS(CAMBER_MORE(upper, lower), CAMBER_TILE_CELLS - 1);
+CAMBER_FN camber_mask camber_columns_at(camber_real x) {
+    return camber_cell_at(x, x > 0.0f, (float)CAMBER_TILE_CELLS);
+}
+
+/* Returns the columns that the kept edges from k on pass in a row of cells, one bit each, of an edge in each lane. */
+CAMBER_FN camber_words camber_kept_columns(const camber_area_state *s, int k, int row) {
+    const camber_words one = CAMBER_WORD(1u), two = CAMBER_WORD(2u), none = CAMBER_WORD(0u);
+    const camber_real x0 = CAMBER_LOAD(0, s->placed[0] + k), y0 = CAMBER_LOAD(0, s->placed[1] + k),
+                      y1 = CAMBER_LOAD(0, s->placed[2] + k), slope = CAMBER_LOAD(0, s->placed[3] + k);
+    const camber_real top = CAMBER_REAL((float)(CAMBER_CELL_PX * row)), bottom = top + (float)CAMBER_CELL_PX;
+    const camber_mask passes = (camber_numbers(0) < (float)(s->kept_count - k)) & (y1 > top) & (y0 < bottom);
+    if (!CAMBER_ANY(passes))
+        return none;
+    const camber_real from = top < y0 ? y0 : top > y1 ? y1 : top, to = bottom < y0 ? y0 : bottom > y1 ? y1 : bottom;
+    const camber_mask upper = camber_columns_at(x0 + (from - y0) * slope);
+    const camber_mask lower = camber_columns_at(y0 == y1 ? slope : x0 + (to - y0) * slope);
+    const camber_words first = CAMBER_TO_WORDS(CAMBER_LESS(upper, lower)),
+                       last = CAMBER_TO_WORDS(CAMBER_MORE(upper, lower));
+    return passes ? ((two << last) - (one << first)) & 255u : none;
 }
 
 /* Prepares a row of cells for changes: if it has no edges so far, clears its changes. */
@@ -497,13 +501,12 @@ CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_t
 }
 
 /* Whether the next edge is kept too. A work-item that draws a cell keeps the edges that pass it. */
-CAMBER_FN int camber_area_keeps(const camber_area_state *s, camber_tile_rows where) {
+CAMBER_FN int camber_area_keeps(camber_area_state *s, camber_tile_rows where) {
 #if CAMBER_OWN_SIDE == 1
-    camber_tile_edge e;
-    camber_placed_edge_of(s, s->kept_count, &e);
-    camber_cell_columns at;
-    camber_edge_columns(&e, where.first, &at);
-    return where.column >= at.first && where.column <= at.last;
+    const int kept = s->kept_count++;
+    const camber_u32 columns = camber_kept_columns(s, kept, where.first);
+    s->kept_count = kept;
+    return columns >> where.column & 1u;
 #else
     (void)s;
     (void)where;

@@ -572,25 +572,44 @@ CAMBER_FN void camber_tiny_edges_of(const camber_ring_edges *e, camber_mask want
     tiny->height = CAMBER_ROUNDED_WORDS(high);
 }
 
+#if CAMBER_HAS_VECTORS
+/* All bits for the pixel of a row of a cell, by its column, and for the pixels right of it. */
+constant camber_u32 PIXEL[CAMBER_CELL_PX][CAMBER_CELL_PX] = {
+    {~0u, 0, 0, 0}, {0, ~0u, 0, 0}, {0, 0, ~0u, 0}, {0, 0, 0, ~0u}};
+constant camber_u32 BEHIND[CAMBER_CELL_PX][CAMBER_CELL_PX] = {
+    {0, ~0u, ~0u, ~0u}, {0, 0, ~0u, ~0u}, {0, 0, 0, ~0u}, {0, 0, 0, 0}};
+#endif
+
+/* Returns what a tiny edge in a column of a row of a cell changes in pixel i of the row. */
+CAMBER_FN camber_u32 camber_tiny_change(camber_u32 column, camber_u32 i, camber_u32 here, camber_u32 height) {
+#if CAMBER_HAS_VECTORS
+    return (here & PIXEL[column][i]) | (height & BEHIND[column][i]);
+#else
+    return i < column ? 0u : i == column ? here : height;
+#endif
+}
+
 /* Adds tiny edge k of a vector to its pixel, and to everything to the right of it. */
 CAMBER_FN void camber_area_add_tiny(camber_area_state *s, const camber_tiny_edges *tiny, int k,
                                     camber_tile_rows where) {
-    const int y = camber_integer_of(&tiny->row, k), x = camber_integer_of(&tiny->column, k);
-    const int row = y / CAMBER_CELL_PX, column = x / CAMBER_CELL_PX, first = y % CAMBER_CELL_PX * CAMBER_CELL_PX;
+    const camber_u32 y = (camber_u32)camber_integer_of(&tiny->row, k),
+                     x = (camber_u32)camber_integer_of(&tiny->column, k);
+    const camber_u32 first = y % CAMBER_CELL_PX * CAMBER_CELL_PX;
+    const int row = (int)(y / CAMBER_CELL_PX), column = (int)(x / CAMBER_CELL_PX);
     const int on = CAMBER_MORE(column + 1, CAMBER_FIRST_COLUMN(where));
     const camber_u32 here = ((const camber_u32 *)&tiny->here)[k], height = ((const camber_u32 *)&tiny->height)[k];
     camber_area_take_row(s, row);
     s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row + column);
     if (on <= CAMBER_LAST_COLUMN(where) + 1) {
         camber_u32 *to = (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON];
-        for (int i = 0; i < CAMBER_CELL_PX; i++)
+        for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
             to[first + i] += height;
     }
     if (column >= CAMBER_FIRST_COLUMN(where) && column <= CAMBER_LAST_COLUMN(where)) {
         camber_u32 *to =
             (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(column, where)][CAMBER_AREA_HERE];
-        for (int i = 0; i < CAMBER_CELL_PX; i++)
-            to[first + i] += i < x % CAMBER_CELL_PX ? 0u : i == x % CAMBER_CELL_PX ? here : height;
+        for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
+            to[first + i] += camber_tiny_change(x % CAMBER_CELL_PX, i, here, height);
     }
 }
 

@@ -132,8 +132,8 @@ CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
 #endif
 
 #if CAMBER_HAS_VECTORS
-/* Returns which lanes of a mask are set, one bit each, the first lane the lowest. Processors know that in an instruction,
- * for which OpenCL C has no words. */
+/* Returns which lanes of a mask are set, one bit each, the first lane the lowest. Processors know that in an
+ * instruction, for which OpenCL C has no words. */
 #if defined(CAMBER_AHEAD_OF_TIME) && defined(__AVX512DQ__) && CAMBER_LANES == 16
 CAMBER_FN camber_u32 camber_lanes_set(camber_mask mask) {
     return (ushort)__builtin_ia32_cvtd2mask512(mask);

@@ -197,7 +197,7 @@ bench_child bench_child_run(const char *const *arguments, const char *cache_dir,
 /* A section's result is {"rows": [...], "figures": [...]}. only: the item to measure, NULL for all. */
 typedef struct bench_section {
     const char *name;
-    json_t *(*measure)(bench *b, const char *only);
+    json_t *(*measure)(bench *b, const char *only); /* NULL: the build lacks what it needs, so it has no rows */
     void (*print)(const json_t *result, FILE *to);
 } bench_section;
 

@@ -43,6 +43,47 @@ static __attribute__((noinline)) void put_listed(const bins *to, listed *l, camb
     l->base = base;
 }
 
+#ifdef CAMBER_AHEAD_OF_TIME /* with eight lanes Oclgrind comes to other tiles */
+#define ROWS_ABREAST 8u
+CAMBER_ROW_ENDS(float8)
+
+/* Whether a box has two to eight rows and columns. */
+static inline int has_few_rows(camber_u32 box) {
+    const camber_u32 wide = CAMBER_BOX_LAST_X(box) - CAMBER_BOX_FIRST_X(box);
+    const camber_u32 high = CAMBER_BOX_LAST_Y(box) - CAMBER_BOX_FIRST_Y(box);
+    return wide - 1u < ROWS_ABREAST - 1u && high - 1u < ROWS_ABREAST - 1u;
+}
+
+/* Lists a segment with such a box that is not among edges. All rows are looked at side by side, as camber_row_span does
+ * for one, and the tiles become the bits of a word, eight for each row, so that there is only one loop. */
+static inline void list_in_rows(global const float *segment, camber_u32 box, camber_u32 which, const camber_bin_args *c,
+                                listed *l) {
+    const uint8 numbers = {0, 1, 2, 3, 4, 5, 6, 7}, one = (uint8)(1u), two = (uint8)(2u), none = (uint8)(0u);
+    const camber_u32 x0 = CAMBER_BOX_FIRST_X(box), y0 = CAMBER_BOX_FIRST_Y(box), x1 = CAMBER_BOX_LAST_X(box),
+                     y1 = CAMBER_BOX_LAST_Y(box), first = (y0 * c->of.columns + x0) << LISTED_BITS | (which - l->base);
+    const float8 first_x = (float8)((float)x0), last_x = (float8)((float)x1);
+    camber_tile_line line;
+    camber_row_reach reach;
+    float8 from = first_x, to = last_x;
+    camber_tile_line_of(segment, &line);
+    camber_row_reach_of(&line, c->of.left, &reach);
+    if (!reach.level)
+        camber_row_ends(&reach, c->of.top + (convert_float8(y0 + numbers) + 0.5f) * CAMBER_TILE_PX, &from, &to);
+    const int8 touches = !(from > last_x) & !(to < first_x) & (numbers <= y1 - y0);
+    const float8 begin = from > first_x ? from : first_x, end = to < last_x ? to : last_x;
+    const uint8 whole = as_uint8(convert_int8(touches ? begin : first_x));
+    const uint8 low = (convert_float8(whole) < begin ? whole + 1u : whole) - x0,
+                high = as_uint8(convert_int8(touches ? end : first_x)) - x0;
+    const uint8 rows = touches ? (two << high) - (one << low) : none;
+    camber_u32 count = l->count;
+    for (ulong left = __builtin_astype(__builtin_convertvector(rows, uchar8), ulong); left; left &= left - 1) {
+        const camber_u32 tile = (camber_u32)popcount((left - 1) & ~left);
+        l->entries[count++] = first + ((tile / ROWS_ABREAST * c->of.columns + tile % ROWS_ABREAST) << LISTED_BITS);
+    }
+    l->count = count;
+}
+#endif
+
 /* Lists segment `which` with any box. */
 static __attribute__((noinline)) void list_any(global const float *segments, global const float *edges, camber_u32 box,
                                                camber_u32 which, const camber_bin_args *c, const bins *to, listed *l) {
@@ -50,6 +91,14 @@ static __attribute__((noinline)) void list_any(global const float *segments, glo
     const int is_edge = among_edges && as_uint(edges[camber_edge_brush(which)]) != CAMBER_NO_EDGE;
     global const float *words =
         is_edge ? edges + camber_edge_ends(which) : segments + (size_t)CAMBER_SEGMENT_WORDS * which;
+#ifdef CAMBER_AHEAD_OF_TIME
+    if (l->count > LISTED_MOST - LISTED_ROOM)
+        put_listed(to, l, l->base);
+    if (!among_edges && has_few_rows(box)) {
+        list_in_rows(words, box, which, c, l);
+        return;
+    }
+#endif
     for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
         const camber_u32 span = camber_tile_span(words, is_edge, box, y, &c->of), row = y * c->of.columns;
         if (l->count > LISTED_MOST - LISTED_ROOM)
@@ -117,6 +166,16 @@ static inline void look_at_boxes(global const camber_u32 *boxes, camber_u32 from
     }
 }
 
+/* Prefetches sixteen segments. Those whose box is neither one tile nor two are read next. */
+static inline void ask_for_segments(global const float *segments) {
+#ifdef CAMBER_AHEAD_OF_TIME
+    for (size_t k = 0; k < 16; k++)
+        __builtin_prefetch(segments + CAMBER_SEGMENT_WORDS * k);
+#else
+    (void)segments;
+#endif
+}
+
 /* Adds the segments of a chunk to their lists, or counts them. */
 static __attribute__((noinline)) void bin_chunk(global const float *segments, global const float *edges,
                                                 global const camber_u32 *boxes, global const camber_u32 *bunches,
@@ -135,6 +194,8 @@ static __attribute__((noinline)) void bin_chunk(global const float *segments, gl
             list_bunch(boxes + i, bunch, i, c, &l);
             continue;
         }
+        if (i - c->first_edge >= c->edge_count)
+            ask_for_segments(segments + CAMBER_SEGMENT_WORDS * (size_t)(i + 16));
         look_at_boxes(boxes, i, l.base, c, &b);
         camber_u32 count = l.count;
         for (camber_u32 k = 0; k < 16; k++) {

@@ -122,7 +122,7 @@ typedef struct camber_cell_bounds {
     camber_real wide, full;       /* to the side of the line: for cells that it touches, and for cells that it fills */
     camber_real near_a, near_b;   /* along the line: an end matters before near_a and after near_b */
     camber_real near_fa, near_fb; /* the same, past the bisectors */
-    camber_real far_a, far_b;     /* past the bisectors, where the neighbour has all pixels */
+    camber_real far_a, far_b;     /* past the bisectors, where the neighbour has all pixels, or no cap reaches */
 } camber_cell_bounds;
 
 CAMBER_FN void camber_cell_bounds_of(const camber_edges *p, camber_cell_bounds *b) {
@@ -141,8 +141,13 @@ CAMBER_FN void camber_cell_bounds_of(const camber_edges *p, camber_cell_bounds *
     b->near_b = p->length - near;
     b->near_fa = reach_a + 0.5f;
     b->near_fb = -0.5f - reach_b;
-    b->far_a = p->owner_a == always ? -reach_a : always;
-    b->far_b = p->owner_b == always ? reach_b : -always;
+    /* A cap has no neighbour, but an end: half the width past it if it is round. Its bisector is straight across. */
+    const camber_real cap_a = CAMBER_LESS(p->flat_a, h) + CAMBER_PAD_PX + reach_a,
+                      cap_b = CAMBER_LESS(p->flat_b, h) + CAMBER_PAD_PX + reach_b;
+    const camber_real past_a = p->owner_a == CAMBER_NEVER_PX ? -cap_a : always,
+                      past_b = p->owner_b == CAMBER_NEVER_PX ? cap_b : -always;
+    b->far_a = p->owner_a == always ? -reach_a : past_a;
+    b->far_b = p->owner_b == always ? reach_b : past_b;
 }
 
 /* How far cells are along a segment, beside it, and past the bisectors, in px: the part that comes from one coordinate

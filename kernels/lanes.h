@@ -31,8 +31,8 @@ typedef CAMBER_OF_LANES(int) camber_mask; /* all bits of a lane, or none */
 typedef CAMBER_OF_LANES(ulong) camber_long_words;
 
 #define CAMBER_TO_REAL(x) CAMBER_OF_LANES(convert_float)(x) /* of words or of integers */
-/* Of reals from 0 on and below 2^31, truncated to integers. AVX2 has no instruction that makes other words. */
-#define CAMBER_TO_WORDS(x) CAMBER_OF_LANES(convert_uint)(CAMBER_TO_INTEGERS(x))
+/* Truncates reals from 0 on, below 2^31, to integers: AVX2 converts only to integers with a sign. */
+#define CAMBER_TO_WORDS(x) CAMBER_AS_WORDS(CAMBER_TO_INTEGERS(x))
 #define CAMBER_TO_INTEGERS(x) CAMBER_OF_LANES(convert_int)(x)
 #define CAMBER_TO_LONG_WORDS(x) CAMBER_OF_LANES(convert_ulong)(x)
 #define CAMBER_AS_REAL(x) CAMBER_OF_LANES(as_float)(x)

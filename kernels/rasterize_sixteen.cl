@@ -20,19 +20,22 @@ typedef struct segment_batch {
 #define draw_segment_batch(c, at, segments, where, b) ((b)->count = 0)
 #else
 
-/* Classes of segments by what their ends need: nothing more, flat caps, or something else, of which sharp joins need
- * most. */
+/* Classes of segments by what their ends need: nothing more, one flat cap or two, of which nothing else counts, or
+ * something else, of which sharp joins need most. */
 #define ENDS_PLAIN 0u
-#define ENDS_CAPPED 1u
-#define ENDS_OTHER 2u
-#define ENDS_SHARP 3u
+#define ENDS_CAP_A 1u
+#define ENDS_CAP_B 2u
+#define ENDS_CAPS 3u
+#define ENDS_OTHER 4u
+#define ENDS_SHARP 5u
 
 /* Returns the class of each of a vector of segments. */
 static inline camber_words ends_of(const camber_edges *p) {
     const camber_real never = CAMBER_REAL(CAMBER_NEVER_PX);
-    const camber_mask joined_a = (p->flat_a < never) & (p->sa != 0.0f),
-                      joined_b = (p->flat_b < never) & (p->sb != 0.0f);
-    const camber_words plain = p->capped ? (camber_words)(ENDS_CAPPED) : (camber_words)(ENDS_PLAIN);
+    const camber_mask joined_a = (p->flat_a < never) & p->goes_on_a, joined_b = (p->flat_b < never) & p->goes_on_b;
+    const camber_words none = (camber_words)(ENDS_PLAIN), at_a = (camber_words)(ENDS_CAP_A),
+                       at_b = (camber_words)(ENDS_CAP_B);
+    const camber_words plain = (p->goes_on_a ? none : at_a) | (p->goes_on_b ? none : at_b);
     const camber_words rest = p->sharp ? (camber_words)(ENDS_SHARP) : (camber_words)(ENDS_OTHER);
     return (p->sharp | p->thin | p->tips | joined_a | joined_b) ? rest : plain;
 }
@@ -77,6 +80,8 @@ static inline __attribute__((always_inline)) void take_edge(const camber_edges *
     p->thin = camber_integer_of(&all->thin, lane);
     p->tips = camber_integer_of(&all->tips, lane);
     p->capped = camber_integer_of(&all->capped, lane);
+    p->goes_on_a = camber_integer_of(&all->goes_on_a, lane);
+    p->goes_on_b = camber_integer_of(&all->goes_on_b, lane);
     p->sharp = 0;
 }
 
@@ -113,18 +118,20 @@ static inline void find_sets(const camber_edges *p, const camber_cell_boxes *b, 
         for (int down = 0; down < rows; down += 4) {
             camber_words meets = none, nears = none, inside = none;
             for (int j = down; j < down + 4 && j < rows; j++) {
-                camber_words meets_row = none;
+                camber_words meets_row = none, nears_row = none, inside_row = none;
                 camber_cell_lines of_row;
                 camber_cell_lines_down(p, top + (float)(CAMBER_CELL_PX * j), &of_row);
                 for (int i = 0; i < end; i++) {
-                    const camber_words bit = (camber_words)(1u << (4 * (j - down) + i));
                     camber_cell_masks m;
                     camber_cell_masks_from(&bounds, of_column + i, &of_row, &m);
-                    meets_row |= m.partial ? in_box[i] : none;
-                    nears |= m.near_end ? bit : none;
-                    inside |= m.full ? bit : none;
+                    meets_row = m.partial ? meets_row | in_box[i] : meets_row;
+                    nears_row = m.near_end ? nears_row | in_box[i] : nears_row;
+                    inside_row = m.full ? inside_row | in_box[i] : inside_row;
                 }
-                meets |= (b->rows > j ? meets_row : none) << (uint)(4 * (j - down));
+                const uint at = (uint)(4 * (j - down));
+                meets |= (b->rows > j ? meets_row : none) << at;
+                nears |= nears_row << at;
+                inside |= inside_row << at;
             }
             const camber_long_words first = CAMBER_TO_LONG_WORDS(CAMBER_TILE_CELLS * (b->y + down) + b->x + across);
             partial |= CAMBER_TO_LONG_WORDS(spread(meets)) << first;
@@ -154,6 +161,56 @@ static inline void list_cells(cell_list *list, ulong cells, uint word) {
         list->words[at++] = word | (uint)camber_lowest(cells);
     for (; cells; cells &= cells - 1)
         list->words[at++] = word | (uint)camber_lowest(cells);
+}
+
+/* Cells that one of sixteen segments fills, and, in bits of four sets, how many segments are drawn into each of them
+ * before that one. */
+typedef struct filled_cells {
+    ulong cells, before[4];
+} filled_cells;
+
+static inline void find_filled(const batch_sets *sets, uint count, ulong shut, filled_cells *f) {
+    *f = (filled_cells){0};
+    for (uint k = 0; k < count; k++) {
+        const ulong cells = sets->partial[k] & ~(shut | f->cells), inside = sets->full[k];
+        ulong carry = cells & ~inside;
+        f->cells |= cells & inside;
+#pragma unroll
+        for (int i = 0; i < 4; i++) {
+            const ulong next = f->before[i] & carry;
+            f->before[i] ^= carry;
+            carry = next;
+        }
+    }
+}
+
+/* If the brush is opaque, nothing that it draws shows in a cell that one of the segments fills, so that such a cell is
+ * drawn at once, and no other segment into it. But if it would be checked for being full before, it is left alone,
+ * since it might be. Returns the cells that are drawn. */
+static inline ulong draw_filled(camber_tile_state *c, const batch_sets *sets, uint count, ulong shut) {
+    ulong any = 0, drawn = 0;
+    filled_cells f;
+    for (uint k = 0; k < count; k++)
+        any |= sets->full[k];
+    if (!(any & ~shut) || c->now.mode == CAMBER_BRUSH_UNION || c->now.a != 1.0f)
+        return 0;
+    find_filled(sets, count, shut, &f);
+    for (ulong left = f.cells; left; left &= left - 1) {
+        const int i = camber_lowest(left);
+        uint before = 0;
+        for (int k = 0; k < 4; k++)
+            before += (uint)(f.before[k] >> i & 1ul) << k;
+        if (c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL + before >= CAMBER_FULL_CHECK_INTERVAL)
+            continue;
+        c->blend_count[i] += (uchar)(c->now.mode == CAMBER_BRUSH_SUM ? 0u : before);
+        drawn |= 1ul << i;
+        for (int v = 0; v < CAMBER_VECTORS; v++)
+            c->brush[i][v] = CAMBER_REAL(0.0f);
+    }
+    c->brushed |= drawn;
+    c->filled |= drawn;
+    c->whole |= c->now.mode == CAMBER_BRUSH_SUM ? 0 : drawn;
+    return drawn;
 }
 
 /* Lists the cells of all segments, segment by segment, except closed cells, through which nothing below shows. Returns
@@ -193,8 +250,9 @@ static inline camber_real list_y(const list_source *d, int i, int v) {
 
 /* Returns the part of an area that flat caps leave. */
 static inline camber_real cut_caps(const camber_edge *p, const camber_pixel *at, camber_real area) {
-    return camber_between_ends(area, camber_cut_along(p, at, p->flat_a - at->past_a),
-                               camber_cut_along(p, at, p->flat_b - at->past_b));
+    const camber_real all = CAMBER_REAL(1.0f);
+    return camber_between_ends(area, p->goes_on_a ? all : camber_cut_along(p, at, p->flat_a - at->past_a),
+                               p->goes_on_b ? all : camber_cut_along(p, at, p->flat_b - at->past_b));
 }
 
 /* Computes the areas of a cell's pixels near an end. `ends` is a constant, so that the compiler leaves out code that
@@ -205,14 +263,17 @@ static inline __attribute__((always_inline)) void find_areas_by(const list_sourc
     camber_edge p;
     take_edge(d->all, word >> CELL_SEGMENT, &p);
     p.sharp = ends == ENDS_SHARP;
-    if (ends == ENDS_PLAIN || ends == ENDS_CAPPED)
+    if (ends <= ENDS_CAPS) {
         p.thin = p.tips = p.capped = 0;
+        p.goes_on_a = ends == ENDS_PLAIN || ends == ENDS_CAP_B;
+        p.goes_on_b = ends == ENDS_PLAIN || ends == ENDS_CAP_A;
+    }
 #pragma unroll
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_pixel at;
         camber_look(&p, list_x(d, i), list_y(d, i, v), &at);
         area[v] = camber_edge_area(&p, &at);
-        if (ends == ENDS_CAPPED)
+        if (ends == ENDS_CAP_A || ends == ENDS_CAP_B || ends == ENDS_CAPS)
             area[v] = cut_caps(&p, &at, area[v]);
     }
 }
@@ -240,8 +301,12 @@ static inline __attribute__((always_inline)) void find_areas(const list_source *
             area[v] = camber_edge_side(&p, list_x(d, i), list_y(d, i, v));
     } else if (d->ends[k] == ENDS_PLAIN) {
         find_areas_by(d, word, ENDS_PLAIN, area);
-    } else if (d->ends[k] == ENDS_CAPPED) {
-        find_areas_by(d, word, ENDS_CAPPED, area);
+    } else if (d->ends[k] == ENDS_CAP_A) {
+        find_areas_by(d, word, ENDS_CAP_A, area);
+    } else if (d->ends[k] == ENDS_CAP_B) {
+        find_areas_by(d, word, ENDS_CAP_B, area);
+    } else if (d->ends[k] == ENDS_CAPS) {
+        find_areas_by(d, word, ENDS_CAPS, area);
     } else {
         camber_real found[CAMBER_VECTORS]; /* an argument by pointer has to be in memory: only this case's area is */
         if (d->ends[k] == ENDS_OTHER)
@@ -353,7 +418,8 @@ static __attribute__((noinline)) void draw_segment_batch(camber_tile_state *c, c
         camber_cell_boxes_of(&footprint, where, wanted, &boxes);
         find_sets(all + v, &boxes, where, v, &sets);
     }
-    camber_tile_take_cells(c, list_all(&sets, b->count, c->done | c->filled, &list));
+    const ulong shut = c->done | c->filled;
+    camber_tile_take_cells(c, list_all(&sets, b->count, shut | draw_filled(c, &sets, b->count, shut), &list));
     draw_list(c, &from, &list);
     b->count = 0;
 }

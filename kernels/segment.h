@@ -254,22 +254,45 @@ CAMBER_FN void camber_tile_line_of_edge(CAMBER_GLOBAL const float *ends, camber_
     l->reach = CAMBER_EDGE_REACH_PX;
 }
 
-/* Returns the squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8.
- * middle: y of the row's middle, in px; left: where the first square begins, in px. */
-CAMBER_FN camber_u32 camber_row_span(const camber_tile_line *l, float middle, float left, camber_u32 first,
-                                     camber_u32 last, float side) {
-    const float to_middle = 0.5f * side, a_square = 1.0f / side;
-    const float far_b = CAMBER_FABS(l->bx) + CAMBER_FABS(l->by);
+/* How far a segment with its reach is to either side of its line along a row of tiles, and how fast the line moves
+ * along the row, in px. */
+typedef struct camber_row_reach {
+    float ax, ay, ux, beside, scale, left;
+    camber_flag level; /* it runs along the row, all of which it may touch */
+} camber_row_reach;
+
+/* left: where the first tile begins, in px. */
+CAMBER_FN void camber_row_reach_of(const camber_tile_line *l, float left, camber_row_reach *r) {
+    const float to_middle = 0.5f * CAMBER_TILE_PX, far_b = CAMBER_FABS(l->bx) + CAMBER_FABS(l->by);
     const float slack =
         1e-6f * (CAMBER_FABS(l->ax) + CAMBER_FABS(l->ay) + (l->half_width == CAMBER_EDGE_PX ? far_b : 0.0f));
-    const float reach = l->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(l->ux) + CAMBER_FABS(l->uy)) + slack;
-    if (CAMBER_FABS(l->uy) < 1e-3f)
+    r->ax = l->ax;
+    r->ay = l->ay;
+    r->ux = l->ux;
+    r->beside = l->half_width + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(l->ux) + CAMBER_FABS(l->uy)) + slack;
+    r->level = CAMBER_FABS(l->uy) < 1e-3f;
+    r->scale = 1.0f / (r->level ? 1.0f : l->uy);
+    r->left = left;
+}
+
+/* Finds where a segment is in rows of tiles, in tiles from the middle of the row's first one. middle: y of the rows'
+ * middles, in px. */
+#define CAMBER_ROW_ENDS(reals)                                                                                         \
+    CAMBER_FN CAMBER_SAME_NAME void camber_row_ends(const camber_row_reach *r, reals middle, reals *from, reals *to) { \
+        const float to_middle = 0.5f * CAMBER_TILE_PX, a_tile = 1.0f / CAMBER_TILE_PX;                                 \
+        const reals across = (middle - r->ay) * r->ux;                                                                 \
+        const reals one = r->ax + (across - r->beside) * r->scale, other = r->ax + (across + r->beside) * r->scale;    \
+        *from = (CAMBER_LESS(one, other) - to_middle) * a_tile - r->left * a_tile;                                     \
+        *to = ((one < other ? other : one) - to_middle) * a_tile - r->left * a_tile;                                   \
+    }
+CAMBER_ROW_ENDS(float)
+
+/* Returns the tiles of one row of a box that a segment with its reach touches: first | last << 8. */
+CAMBER_FN camber_u32 camber_row_span(const camber_row_reach *r, float middle, camber_u32 first, camber_u32 last) {
+    float from, to;
+    if (r->level)
         return first | last << 8;
-    const float scale = 1.0f / l->uy, across = (middle - l->ay) * l->ux;
-    const float one = l->ax + (across - reach) * scale, other = l->ax + (across + reach) * scale;
-    /* Relative to the squares' middles. */
-    const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
-    const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
+    camber_row_ends(r, middle, &from, &to);
     if (from > (float)last || to < (float)first)
         return 1u; /* none: the last is before the first */
     const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
@@ -306,6 +329,7 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
     const camber_u32 all = first | last << 8;
     camber_tile_line line;
+    camber_row_reach reach;
     if ((first == last && first - 1u < of->columns - 2u) || (top == bottom && top - 1u < of->rows - 2u))
         return all;
     if (is_edge)
@@ -314,8 +338,8 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *words, camber_f
         camber_tile_line_of(words, &line);
     if ((first == last || top == bottom) && camber_line_is_narrow(&line))
         return all;
-    const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
-    return camber_row_span(&line, middle, of->left, first, last, CAMBER_TILE_PX);
+    camber_row_reach_of(&line, of->left, &reach);
+    return camber_row_span(&reach, of->top + ((float)y + 0.5f) * CAMBER_TILE_PX, first, last);
 }
 
 /* Returns the first row of tiles whose top a segment with this box may cross; the last such row is the box's last row.

@@ -72,12 +72,24 @@ CAMBER_FN camber_real camber_extent_along(CAMBER_IN(camber_edge) p, CAMBER_IN(ca
     return CAMBER_REAL(p->side.extent);
 }
 
+/* Whether an end is no flat cap, of which nothing but its own edge counts. Shaders need not know. */
+#ifdef CAMBER_GLSL
+#define CAMBER_GOES_ON_A(p) true
+#define CAMBER_GOES_ON_B(p) true
+#else
+#define CAMBER_GOES_ON_A(p) ((p)->goes_on_a)
+#define CAMBER_GOES_ON_B(p) ((p)->goes_on_b)
+#endif
+
 /* Finds the nearest point of the line: fills in `off` and `across`. */
 CAMBER_FN void camber_find_nearest(CAMBER_IN(camber_edge) p, CAMBER_INOUT(camber_pixel) at) {
-    const camber_real none = CAMBER_REAL(0.0f), arc_a = at->past_a - p->round_a, arc_b = at->past_b - p->round_b;
+    const camber_real none = CAMBER_REAL(0.0f), arc_a = CAMBER_GOES_ON_A(p) ? at->past_a - p->round_a : none,
+                      arc_b = CAMBER_GOES_ON_B(p) ? at->past_b - p->round_b : none;
+    const camber_real bend_a = CAMBER_GOES_ON_A(p) ? camber_join_bend(at->fa, p->sa) : none,
+                      bend_b = CAMBER_GOES_ON_B(p) ? camber_join_bend(-at->fb, p->sb) : none;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = CAMBER_MORE(farther, none);
     /* More than a pixel onto an arc, past the segment's end, only the distance counts. */
-    const camber_real straight = 1.0f - arc, bend = camber_join_bend(at->fa, p->sa) + camber_join_bend(-at->fb, p->sb);
+    const camber_real straight = 1.0f - arc, bend = bend_a + bend_b;
     at->off = arc;
     at->across = at->y - bend * CAMBER_MORE(straight, none);
 }
@@ -126,8 +138,9 @@ CAMBER_FN camber_real camber_edge_caps(CAMBER_IN(camber_edge) p, CAMBER_IN(cambe
 
 /* Returns the area, or 0 if the pixel is on the neighbour's side of a bisector and the neighbour draws it. */
 CAMBER_FN camber_real camber_edge_owner(CAMBER_IN(camber_edge) p, CAMBER_IN(camber_pixel) at, camber_real area) {
-    const camber_mask at_a = CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a);
-    const camber_mask at_b = CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b);
+    const camber_mask no = CAMBER_ALL_LANES(CAMBER_NO);
+    const camber_mask at_a = CAMBER_GOES_ON_A(p) ? CAMBER_BOTH(at->fa<-CAMBER_TIE(at), at->past_a> p->owner_a) : no;
+    const camber_mask at_b = CAMBER_GOES_ON_B(p) ? CAMBER_BOTH(at->fb >= CAMBER_TIE(at), at->past_b > p->owner_b) : no;
     return CAMBER_EITHER(at_a, at_b) ? CAMBER_REAL(0.0f) : area;
 }
 

@@ -108,6 +108,8 @@ CAMBER_STRUCT(CAMBER_EDGE) {
     CAMBER_COEF owner_a, owner_b;
     CAMBER_COEF_WORDS end_a, end_b;
     CAMBER_COEF_MASK linear, thin, tips, capped, sharp;
+    /* Whether the end at A, and that at B, is no flat cap, of which nothing but its own edge counts. */
+    CAMBER_COEF_MASK goes_on_a, goes_on_b;
 };
 
 /* Computes everything that is not in the segment's words. It is always inlined, so that the compiler drops what the
@@ -135,6 +137,8 @@ CAMBER_FN CAMBER_SAME_NAME CAMBER_INLINE void camber_edge_finish(CAMBER_COEF_WOR
                                    CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_A), CAMBER_END_FLAT(end_a) != 0u);
     p->owner_b = camber_owner_from(CAMBER_END_CLASS(end_b) == CAMBER_CLASS_CAP,
                                    CAMBER_HAS(flags, CAMBER_SEGMENT_OWNER_B), CAMBER_END_FLAT(end_b) != 0u);
+    p->goes_on_a = CAMBER_EITHER(p->owner_a < CAMBER_NEVER_PX, p->flat_a == CAMBER_NEVER_PX);
+    p->goes_on_b = CAMBER_EITHER(p->owner_b < CAMBER_NEVER_PX, p->flat_b == CAMBER_NEVER_PX);
     p->thin = h < p->side.extent;
     p->tips = (h < CAMBER_TIPS_PX) & CAMBER_HAS(flags, CAMBER_SEGMENT_ROUNDED);
     p->capped = CAMBER_HAS(flags, CAMBER_SEGMENT_FLAT);

@@ -13,6 +13,7 @@ import hashlib
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -67,6 +68,52 @@ def newest_glibc(files):
     return max(versions)
 
 
+# glibc 2.29 has exp, exp2, log, log2 and pow once more: the new ones set errno otherwise, and return the same numbers.
+MATHS = b"GLIBC_2.29"
+OLDER_MATHS = {"x86_64": b"GLIBC_2.2.5", "aarch64": b"GLIBC_2.17"}
+
+
+def hash_version(name):
+    """As ELF hashes names of symbols and versions."""
+    value = 0
+    for byte in name:
+        value = (value << 4) + byte
+        value = (value ^ (value & 0xF0000000) >> 24) & 0x0FFFFFFF
+    return value
+
+
+def bind_older_maths(path):
+    """Changes a library that wants functions of MATHS from libm: it wants the older ones, which any libm has."""
+    with open(path, "rb") as file:
+        elf = bytearray(file.read())
+    first, size, count = struct.unpack_from("<Q10xHH", elf, 0x28)
+    sections = [struct.unpack_from("<IIQQQQIIQQ", elf, first + i * size) for i in range(count)]
+    for _, kind, _, _, needs, _, link, needed_files, _, _ in sections:
+        if kind != 0x6FFFFFFE:  # SHT_GNU_verneed
+            continue
+        _, _, _, _, texts, text_size, _, _, _, _ = sections[link]
+
+        def text(at):
+            return bytes(elf[texts + at:elf.index(0, texts + at)])
+
+        older = OLDER_MATHS[os.uname().machine]
+        place = elf.find(b"\0" + older + b"\0", texts, texts + text_size) + 1 - texts
+        for _ in range(needed_files):
+            _, versions, name, at, following = struct.unpack_from("<HHIII", elf, needs)
+            at += needs
+            for _ in range(versions):
+                _, _, _, version, behind = struct.unpack_from("<IHHII", elf, at)
+                if text(name) == b"libm.so.6" and text(version) == MATHS:
+                    if place <= 0:
+                        sys.exit("bundle: %s has no text %s" % (path, older.decode()))
+                    struct.pack_into("<I", elf, at, hash_version(older))
+                    struct.pack_into("<I", elf, at + 8, place)
+                at += behind
+            needs += following
+    with open(path, "wb") as file:
+        file.write(elf)
+
+
 class Bundle:
     def __init__(self, root, prefix):
         self.package, self.prefix = os.path.join(root, "camber"), prefix
@@ -113,6 +160,7 @@ class Bundle:
             for name in needed(path):
                 if name in self.new_names:
                     subprocess.run(["patchelf", "--replace-needed", name, self.new_names[name], path], check=True)
+            bind_older_maths(path)
         self.write_licences()
 
     def write_licences(self):

@@ -3,9 +3,9 @@
 #
 # Runs as root in a fresh Debian 11, whose C library (2.31) is as old as that of any Linux of the last five years;
 # tests/recipes/recipes.sh makes one, which ./dev wheel calls. Debian 11 has clang 16, which compiles the kernels. Its
-# HarfBuzz, jansson, libdeflate and libmicrohttpd are too old, and its Cairo wants X11: these are built here from
-# Debian 12's sources, and kept in LIBRARIES_FOLDER for the next time. setuptools, which is Python only, and GDAL's
-# headers are Debian 12's.
+# HarfBuzz, jansson, libdeflate and libmicrohttpd are too old, its Cairo wants X11, and its fontconfig does not know all
+# that newer systems configure, nor their caches: these are built here from Debian 12's sources, and kept in
+# LIBRARIES_FOLDER for the next time. setuptools, which is Python only, and GDAL's headers are Debian 12's.
 set -eux
 tree=$1 out=$2
 prefix=$3/$(sed -n '/^begin()/,/^cd /p' "$0" | sha256sum | cut -c 1-12) # other recipes, other libraries
@@ -23,7 +23,7 @@ apt-get update -qq -o Acquire::Check-Valid-Until=false
 apt-get install -y -qq -o Acquire::Retries=5 --no-install-recommends gcc g++ make libc6-dev dpkg-dev cmake ninja-build \
     pkg-config file patchelf clang-16 python3-dev python3-distutils python3-cffi python3-wheel python3-pip \
     libpng-dev libwebp-dev libmeshoptimizer-dev libisal-dev liblz4-dev libzstd-dev liblzma-dev \
-    libprotobuf-c-dev protobuf-c-compiler libsqlite3-dev zlib1g-dev libfribidi-dev libfontconfig1-dev libfreetype-dev \
+    libprotobuf-c-dev protobuf-c-compiler libsqlite3-dev zlib1g-dev libfribidi-dev libfreetype-dev libexpat1-dev gperf \
     libpixman-1-dev libjs-leaflet
 mkdir -p /opt/parts && cd /opt/parts
 apt-get download -qq python3-setuptools/bookworm python3-pkg-resources/bookworm libgdal-dev/bookworm
@@ -69,6 +69,15 @@ if ! has cairo; then
         CFLAGS=-O2
     make -s -C src -j "$(nproc)" install
     end libcairo
+fi
+if ! has libfontconfig; then
+    begin fontconfig # with the folders of Debian's, which are those of most systems
+    set_times
+    ./configure -q --prefix="$prefix" --sysconfdir=/etc --localstatedir=/var --with-cache-dir=/var/cache/fontconfig \
+        --with-templatedir=/usr/share/fontconfig/conf.avail --disable-static --disable-docs --disable-nls CFLAGS=-O2
+    make -s -j "$(nproc)" -C fc-case && make -s -C fc-lang && make -s -j "$(nproc)" -C src
+    make -s -C src install && make -s -C fontconfig install && make -s install-pkgconfigDATA
+    end libfontconfig
 fi
 if ! has libdeflate; then
     begin libdeflate

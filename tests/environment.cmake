@@ -13,8 +13,8 @@ foreach(test IN LISTS all)
   # These test OpenCL: its calls, its caches, what drivers need, and how the tool fares with it. Others run on the back end
   # cpu, as users do, if it was built: a process that loads PoCL takes a third of a second for that.
   get_test_property(${test} LABELS label)
-  if(label MATCHES "faults|deep|recipes|fuzz" OR
-     test MATCHES "^(kernels|compilations|test_(program|memory|parts|network|offset|fork|cli|install|examples))$")
+  if((label MATCHES "faults|deep|recipes|fuzz" AND NOT test MATCHES "^test_(validate|(leaks|memory)_cpu)$") OR
+     test MATCHES "^(kernels|compilations|test_(program|memory|parts|fork|cli|install|examples))$")
     set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT CAMBER_CPU=none)
   endif()
   set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT ${environment})

@@ -104,6 +104,8 @@ def as_colors(color):
     if isinstance(color, str) or (numpy.ndim(color) == 1 and len(color) and not isinstance(color[0], str)):
         return numpy.array([parse_color(color)], numpy.float32), False
     array = numpy.asarray(color)
+    if array.ndim == 0:
+        raise ArgumentError("color is %r; give a name like \"navy\", \"#rrggbb\", or one for each line" % (color,))
     if array.size == 0:
         return numpy.zeros((0, 4), numpy.float32), True
     if array.dtype == numpy.uint8:

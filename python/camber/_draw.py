@@ -316,7 +316,10 @@ class Network:
     _warns = True  # of empty pictures
 
     def __init__(self, points, offsets=None, *, rows=None, importance=None, keep_open=False, dashed=False,
-                 context=None):
+                 context=None, **unknown):
+        if unknown:
+            name = next(iter(unknown))
+            raise TypeError("%s= is an argument of draw()" % name if name in STYLE else explain_unknown(name))
         self._context = default(context)
         lines = as_lines(points, offsets, numpy.float64, numpy.uint64)
         self._rows = as_rows(rows, lines)

@@ -5,6 +5,7 @@ import datetime
 import decimal
 import importlib
 import json
+import os
 import struct
 import sys
 
@@ -66,10 +67,21 @@ def is_pair(value):
         (value[0].ndim, value[1].ndim) == (2, 1) and value[1].dtype.kind in "iu"
 
 
+def refuse(points):
+    """Refuses what is likely given in place of lines: nothing, a file, or a table without a geometry."""
+    if points is None or isinstance(points, (str, bytes, os.PathLike)):
+        raise TypeError("the lines are %r; give a GeoDataFrame or arrays. camber.Map(file) draws a file, and "
+                        "geopandas.read_file(file) reads one" % (points,))
+    if isinstance(points, dict) or (columns_of(points) and not hasattr(points, "geometry")
+                                    and not hasattr(points, "__arrow_c_stream__")):
+        raise TypeError("the table has no geometry; give a GeoDataFrame, or camber.tracks(table, x, y, by)")
+
+
 def as_lines(points, offsets, dtype, offset_dtype, dots=False):
     """Converts any supported value to Lines of these types. dots: points of Shapely are lines of one point."""
     if offsets is None and is_pair(points):
         points, offsets = points
+    refuse(points)
     if isinstance(points, Lines):
         lines = points
     elif offsets is not None:
@@ -142,7 +154,11 @@ def tracks(table, x="x", y="y", by=None):
     missing = [name for name in (x, y, by) if name is not None and name not in columns_of(table)]
     if missing:
         raise ValueError("there is no column %r; the table has %s" % (missing[0], ", ".join(map(repr, columns_of(table)))))
-    points = numpy.stack([as_values(table[name]).astype(numpy.float64) for name in (x, y)], axis=1)
+    values = [as_values(table[name]) for name in (x, y)]
+    for name, column in zip((x, y), values):
+        if column.dtype.kind != "f" and len(column):
+            raise ArgumentError("the column %r has no numbers; give columns of coordinates" % name)
+    points = numpy.stack([column.astype(numpy.float64) for column in values], axis=1)
     if by is not None:
         keys = numpy.asarray(to_array(table[by]))
         has_key = ~(find_missing(keys) if keys.dtype == object else keys != keys)

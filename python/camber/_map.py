@@ -1,5 +1,6 @@
 """Maps: files drawn with a style, into arrays, pages or archives of tiles."""
 
+import difflib
 import importlib
 import json
 import math
@@ -20,6 +21,8 @@ PAGES = {".pdf": lib.CAMBER_PAGE_PDF, ".svg": lib.CAMBER_PAGE_SVG}
 PICTURES = {".png": "png", ".webp": "webp"}
 FITS = {"contain": False, "cover": True}
 MARGIN_SHARE, PRINTED_DPI = 0.04, 300  # as in camber render
+PLOTTED = ("column", "cmap", "vmin", "vmax", "legend", "color", "width", "missing")  # arguments of camber.plot
+VIEWED = ("center", "zoom", "bbox", "bearing", "pitch", "size", "ratio", "simplify", "method", "premultiplied", "out")
 WRITE = ffi.addressof(lib, "camber_python_write")
 
 
@@ -35,7 +38,11 @@ def read_style(style, theme):
     """Returns (document as bytes, its name in messages, the file that its paths are relative to)."""
     if isinstance(style, dict):
         return json.dumps(style).encode(), b"style", None
-    path = as_path(style)
+    try:
+        path = as_path(style)
+    except TypeError:
+        raise TypeError("style is of type %s; give a file, a dictionary, or the name of a built-in style: %s"
+                        % (type(style).__name__, ", ".join(styles()))) from None
     if not os.path.exists(path):
         size = ffi.new("size_t *")
         text = lib.camber_style_get_text(path, theme, size)
@@ -47,6 +54,29 @@ def read_style(style, theme):
         return file.read(), path, path
 
 
+def refuse_unknown(unknown, known):
+    """Refuses arguments that a map does not have."""
+    for name in unknown:
+        if name in PLOTTED:
+            raise TypeError("%s= is for lines without a style: camber.plot(data, %s=...); a map looks as its style= says"
+                            % (name, name))
+        near = difflib.get_close_matches(name, known, 1)
+        raise TypeError("there is no argument %r; %s" % (name, "is it %s=?" % near[0] if near else "give %s"
+                                                         % ", ".join(known)))
+
+
+def as_numbers(values, what, names):
+    """Returns numbers, one for each name."""
+    try:
+        numbers = [float(each) for each in values]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != len(names):
+        raise ArgumentError("%s is %r; give %s: %s" % (what, values, ("two numbers", "four numbers")[len(names) > 2],
+                                                       ", ".join(names)))
+    return numbers
+
+
 def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
     """Makes a view. own: the style's view, which is used if neither center nor bbox is given."""
     width, height = as_size(size)
@@ -54,12 +84,13 @@ def as_view(center, zoom, bbox, bearing, pitch, size, ratio, own=None):
     if bbox is not None:
         if center is not None or zoom is not None:
             raise ArgumentError("a bbox cannot be combined with a center or zoom; give one or the other")
-        west, south, east, north = bbox
+        west, south, east, north = as_numbers(bbox, "bbox", ("west", "south", "east", "north"))
         view.update(kind=lib.CAMBER_VIEW_BBOX, west=west, south=south, east=east, north=north)
     elif center is not None or own is not None:
         if zoom is None and own is None:
             raise ArgumentError("there is a center without a zoom; give both")
-        longitude, latitude = center if center is not None else (own.longitude, own.latitude)
+        longitude, latitude = (own.longitude, own.latitude) if center is None else as_numbers(
+            center, "center", ("longitude", "latitude"))
         view.update(kind=lib.CAMBER_VIEW_CENTER, longitude=float(longitude), latitude=float(latitude),
                     zoom=float(zoom if zoom is not None else own.zoom))
     elif zoom is not None:
@@ -120,6 +151,8 @@ def write_frame(frame, file):
     crs = getattr(frame, "crs", None)
     if crs is None:
         raise ArgumentError("the data does not say its CRS; tell it first, as in data.set_crs(\"EPSG:4326\")")
+    if len(frame) and (frame.geometry.isna() | frame.geometry.is_empty).all():
+        raise ArgumentError("none of the data's %d rows has a geometry" % len(frame))
     if not (crs.is_geographic and crs.to_epsg() == 4326):
         frame = frame.to_crs(4326)
     columns = [(str(name), frame.iloc[:, i].tolist()) for i, name in enumerate(getattr(frame, "columns", ()))
@@ -140,7 +173,10 @@ class Map:
     """
 
     def __init__(self, *inputs, style=None, theme="light", layer=None, where=None, labels=True, fonts=(), language=None,
-                 context=None):
+                 context=None, **unknown):
+        refuse_unknown(unknown, ("style", "theme", "layer", "where", "labels", "fonts", "language", "context"))
+        if isinstance(fonts, (str, bytes, os.PathLike)):
+            fonts = (fonts,)
         self._context = default(context)
         self._labels, self._fonts = labels, [as_path(folder) for folder in fonts]
         self._kept = []  # temporary files, which are deleted with the map
@@ -229,8 +265,9 @@ class Map:
         warnings.warn("the picture is empty: %s" % re.sub(r"--(\w+)", r"\1=", why), stacklevel=3)
 
     def draw(self, *, center=None, zoom=None, bbox=None, bearing=None, pitch=None, size=(1024, 1024), ratio=1,
-             simplify=SIMPLIFY_PX, method="strip", premultiplied=False, out=None):
+             simplify=SIMPLIFY_PX, method="strip", premultiplied=False, out=None, **unknown):
         """Draws a view into an array. Without center, zoom and bbox it shows everything that the style draws."""
+        refuse_unknown(unknown, VIEWED)
         view = self._view(center, zoom, bbox, bearing, pitch, size, ratio)
         with self._context._core as core:
             device, renderer, _ = self._context._open(core)
@@ -288,8 +325,7 @@ class Map:
         """Writes a page into a file; without a format, returns it as a picture."""
         asked = {"center": None, "zoom": None, "bbox": None, "bearing": None, "pitch": None, **asked}
         unknown = [name for name in asked if name not in ("center", "zoom", "bbox", "bearing", "pitch")]
-        if unknown:
-            raise TypeError("there is no argument %r; a view has center, zoom, bbox, bearing and pitch" % unknown[0])
+        refuse_unknown(unknown, VIEWED[:5])
         if fit is not None and asked["center"] is not None:
             raise ArgumentError("center and zoom already say what is shown; leave fit out")
         view = self._view(**asked, size=(1024, 1024), ratio=1)

@@ -177,6 +177,8 @@ class Scale:
             low, high = (None if each is None else as_moment(each, values.dtype) for each in (low, high))
         finite = numpy.isfinite(numbers)
         shown = numbers[finite]
+        if any(isinstance(each, str) for each in (low, high)):
+            raise ArgumentError("vmin is %r and vmax %r, and the column has numbers; give numbers" % (low, high))
         self.low = float(low if low is not None else shown.min() if len(shown) else 0)
         self.high = float(high if high is not None else shown.max() if len(shown) else 1)
         if not self.low <= self.high:

@@ -89,7 +89,7 @@ static void look_at_group(void *least, const char *folder) {
 /* The memory that the control group of the process and the groups above it leave free. */
 static uint64_t group_free_bytes(void) {
     uint64_t least = UINT64_MAX;
-    camber_control_group_visit("", look_at_group, &least);
+    camber_control_group_visit("", "memory", look_at_group, &least);
     return least;
 }
 

@@ -1,3 +1,8 @@
+/* How many threads are used, and starting them.
+ *
+ * Input: the process's affinity, the CPU quotas of its control groups, and what the caller asks for. Output: a count,
+ * and threads with numbers. Main idea: whoever cannot get as many threads as wanted does the rest of the work itself.
+ */
 #define _GNU_SOURCE /* sched_getaffinity */
 
 #include "base/threads.h"
@@ -5,6 +10,7 @@
 #include "base/control_group.h"
 
 #include <sched.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -19,24 +25,34 @@ size_t camber_cores_count(void) {
     return online > 0 ? (size_t)online : 1;
 }
 
-/* Lowers *least to the cores that a control group's quota pays for, rounded up. */
-static void look_at_quota(void *least, const char *folder) {
+/* Reads a file of a control group, which has one or two numbers; returns how many. */
+static int read_numbers(const char *folder, const char *name, long long *first, long long *second) {
     char path[4200];
-    unsigned long long quota = 0, period = 0; /* "max" instead of a quota: there is none */
-    size_t *cores = least;
-    snprintf(path, sizeof path, "%s/cpu.max", folder);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *file = fopen(path, "re");
-    if (file && fscanf(file, "%llu %llu", &quota, &period) == 2 && quota > 0 && period > 0) {
-        const unsigned long long paid = quota / period + (quota % period != 0);
-        *cores = paid < *cores ? (size_t)paid : *cores;
-    }
+    const int count = file ? fscanf(file, "%lld %lld", first, second) : 0;
     if (file)
         fclose(file);
+    return count;
+}
+
+/* Lowers *least to the cores that a control group's quota pays for, rounded up. Without a quota, version 2 says "max",
+ * and version 1 -1. */
+static void look_at_quota(void *least, const char *folder) {
+    long long quota = 0, period = 0, none;
+    size_t *cores = least;
+    const bool is_told = read_numbers(folder, "cpu.max", &quota, &period) == 2 ||
+                         (read_numbers(folder, "cpu.cfs_quota_us", &quota, &none) == 1 &&
+                          read_numbers(folder, "cpu.cfs_period_us", &period, &none) == 1);
+    if (!is_told || quota <= 0 || period <= 0)
+        return;
+    const unsigned long long paid = (unsigned long long)(quota / period + (quota % period != 0));
+    *cores = paid < *cores ? (size_t)paid : *cores;
 }
 
 size_t camber_cores_paid(const char *root) {
     size_t least = SIZE_MAX;
-    camber_control_group_visit(root, look_at_quota, &least);
+    camber_control_group_visit(root, "cpu", look_at_quota, &least);
     return least;
 }
 

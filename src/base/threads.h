@@ -21,8 +21,8 @@ typedef struct camber_threads {
 
 /* Returns how many cores the process may use: those of its affinity, which containers and taskset limit. At least 1. */
 size_t camber_cores_count(void);
-/* Returns how many cores the quotas of the process's control group and of the groups above it pay for (cpu.max, which
- * containers set); SIZE_MAX: there is no quota. root is as in control_group.h. */
+/* Returns how many cores the quotas of the process's control group and of the groups above it pay for, which containers
+ * set (cpu.max, or cpu.cfs_quota_us of version 1); SIZE_MAX: there is no quota. root is as in control_group.h. */
 size_t camber_cores_paid(const char *root);
 /* Returns how many threads to use: as many as asked for, or, if asked is 0, one per core that the process may use and
  * that its quota pays for. The result is at least 1 and at most CAMBER_MOST_THREADS. */

@@ -378,15 +378,16 @@ static camber_status project_validated(camber_input *input, camber_scene_desc de
     return project_new(input, &desc);
 }
 
-/* Only one picture of the network is drawn, so its lines are counted and then freed. A page of vectors is drawn from
- * the features, which therefore keep their points. */
+/* Only one picture of the network is drawn. If its lines are to be counted, they are made on the host, too, and then
+ * freed. A page of vectors is drawn from the features, which therefore keep their points. */
 static camber_status project_once(camber_input *input, const camber_scene_desc *desc) {
+    const camber_options *options = input->session->options;
+    const bool is_vector = camber_format_is_vector(options->format);
     camber_scene_desc once = *desc;
     once.use = CAMBER_SCENE_ONE_VIEW;
-    camber_status status = camber_format_is_vector(input->session->options->format)
-                               ? camber_scene_create(input->features, &once, &input->scene)
-                               : camber_scene_create_last(input->features, &once, &input->scene);
-    if (status != CAMBER_OK)
+    camber_status status = is_vector ? camber_scene_create(input->features, &once, &input->scene)
+                                     : camber_scene_create_last(input->features, &once, &input->scene);
+    if (status != CAMBER_OK || !(is_vector || options->verbose || options->json))
         return status;
     status = camber_scene_project(input->scene);
     if (status == CAMBER_OK)
@@ -496,10 +497,10 @@ static const char *likely_cause(const camber_input *input) {
 }
 
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
-    const bool once = input->session->options->verb == CAMBER_VERB_RENDER;
-    const camber_polylines_stats drawn =
-        once ? input->drawn : camber_polylines_get_stats(camber_input_polylines(input));
-    if (drawn.polylines > 0 || knows_why_empty(input))
+    if (input->drawn.polylines > 0 || knows_why_empty(input))
+        return;
+    const camber_polylines *polylines = camber_input_polylines(input);
+    if (polylines && camber_polylines_get_stats(polylines).polylines > 0)
         return;
     char why[1024] = "no polylines";
 #ifdef CAMBER_MAP

@@ -27,7 +27,7 @@ typedef struct camber_input {
     camber_scene *scene;
     camber_page *page;    /* the sheet that is drawn. NULL: none */
     camber_scene *filled; /* validate: the scene with areas, if there are any; scene is then without them. NULL: none */
-    camber_polylines_stats drawn; /* render: counts of the lines in the picture, which are freed afterwards */
+    camber_polylines_stats drawn; /* render: counts of the lines in the picture, if they are to be told; else 0 */
 } camber_input;
 
 /* Reads the files that the options name. Returns an exit status; on failure a line has been printed. The input must be

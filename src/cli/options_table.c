@@ -129,7 +129,7 @@ const camber_option_spec camber_option_specs[] = {
      "draw a sheet: A0 to A6, B0 to B6, Letter, Legal, Tabloid, or as in 600x900mm (pdf, svg: A4)"},
     {"landscape", 0, CAMBER_OPTION_FLAG, PRINTED, FIELD(landscape), NULL, "turn the sheet on its long side"},
     {"dpi", 0, CAMBER_OPTION_NUMBER, PRINTED, FIELD(dpi), "N",
-     "device pixels per inch of paper; a PNG tells them to its readers (300)", 10, 4800},
+     "device pixels per inch, which a PNG tells its readers (300; no sheet: 96 times --ratio)", 10, 4800},
     {"margin", 0, CAMBER_OPTION_NUMBER, PRINTED, FIELD(margin_mm), "MM",
      "white edge of the sheet, in mm (4 % of its shorter side)", 0, 20000},
     {"title", 0, CAMBER_OPTION_WORDS, PRINTED, FIELD(title), "TEXT", "large text below the map on a sheet"},

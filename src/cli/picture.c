@@ -1,10 +1,13 @@
-/* Draws a frame and writes it. A PNG is written row by row as it is drawn, so a picture of any size fits in memory.
- * Other formats need the whole picture in memory. */
+/* Draws a frame and writes it. A large PNG is written row by row as it is drawn, so a picture of any size fits in
+ * memory. Other formats need the whole picture in memory, and small pictures are drawn there in place. */
 #include "cli/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { SMALL_PX = 1 << 22 };
+static const double CSS_PX_PER_INCH = 96.0;
 
 typedef struct writer {
     camber_report *report;
@@ -14,10 +17,14 @@ typedef struct writer {
     /* png or encoder is used, the other is NULL */
     camber_png *png;
     camber_encoder *encoder;
-    uint8_t *rgba; /* the rows for the encoder */
+    uint8_t *rgba; /* the picture for the encoder */
     double write_ms;
     camber_status status; /* status of the first write that failed */
 } writer;
+
+static bool is_small(const writer *w) {
+    return (uint64_t)w->width * w->height <= SMALL_PX;
+}
 
 static camber_status keep_rows(writer *w, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     const size_t row_bytes = 4 * (size_t)w->width;
@@ -36,18 +43,23 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     return w->status == CAMBER_OK;
 }
 
+/* Returns the px per inch that a PNG tells. Without --dpi a CSS px is 1/96 inch, as in a PDF of the same picture. */
+static double dots_per_inch(const camber_options *options) {
+    return isnan(options->dpi) ? CSS_PX_PER_INCH * options->view.ratio : options->dpi;
+}
+
 static camber_status begin(writer *w, const camber_options *options, bool opaque, const char *attribution) {
     char software[64];
     snprintf(software, sizeof software, "camber %s", camber_version());
     const camber_png_text texts[] = {{"Software", software}, {"Copyright", attribution}};
     const size_t text_count = attribution ? 2 : 1;
-    if (options->format == CAMBER_FORMAT_PNG) {
+    if (options->format == CAMBER_FORMAT_PNG && !is_small(w)) {
         const camber_png_desc desc = {.width = w->width,
                                       .height = w->height,
                                       .opaque = opaque,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
+                                      .dpi = dots_per_inch(options)};
         return camber_png_create(w->context, &desc, camber_output_sink(w->output), &w->png);
     }
     const camber_encoder_desc desc = {.encoding = camber_format_encoding(options->format),
@@ -55,8 +67,9 @@ static camber_status begin(writer *w, const camber_options *options, bool opaque
                                       .quality = (int)options->quality,
                                       .texts = texts,
                                       .text_count = text_count,
-                                      .dpi = isnan(options->dpi) ? 0.0 : options->dpi};
-    w->rgba = malloc(4 * (size_t)w->width * w->height);
+                                      .dpi = dots_per_inch(options)};
+    const size_t bytes = 4 * (size_t)w->width * w->height, rest = bytes % CAMBER_PIXELS_ALIGNMENT;
+    w->rgba = aligned_alloc(CAMBER_PIXELS_ALIGNMENT, rest ? bytes + CAMBER_PIXELS_ALIGNMENT - rest : bytes);
     return w->rgba ? camber_encoder_create(w->context, &desc, &w->encoder) : CAMBER_ERROR_MEMORY;
 }
 
@@ -127,6 +140,14 @@ static camber_status render_page(camber_input *input, camber_mesh *mesh, writer 
 }
 #endif
 
+/* Small pictures by one call, without rows that are copied. */
+static camber_status render_frame(camber_input *input, const camber_frame *frame, writer *w,
+                                  camber_frame_stats *stats) {
+    camber_renderer *renderer = input->session->renderer;
+    return is_small(w) ? camber_renderer_render_into(renderer, frame, w->rgba, 0, stats)
+                       : camber_renderer_render(renderer, frame, write_rows, w, stats);
+}
+
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times) {
     camber_session *session = input->session;
     const camber_frame frame = camber_input_frame(input, mesh);
@@ -145,8 +166,8 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
     camber_status status = begin(&w, session->options, on_sheet || camber_input_opaque(input), input->attribution);
     w.write_ms = camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = on_sheet ? render_page(input, mesh, &w, &times->frame)
-                          : camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
+        status =
+            on_sheet ? render_page(input, mesh, &w, &times->frame) : render_frame(input, &frame, &w, &times->frame);
     if (w.status != CAMBER_OK)
         status = w.status;
     const double finish_ms = camber_now_ms();

@@ -70,13 +70,14 @@ void camber_report_progress(void *user, const camber_progress_info *progress) {
     camber_report *report = user;
     if (strcmp(progress->stage, "compiling kernels") == 0)
         say_compiles(report, progress->stage);
-    else if (report->bars)
+    else if (report->bars && !report->has_steps)
         camber_progress_show(&report->bar, progress);
 }
 
 void camber_report_step(camber_report *report, const char *stage, const char *unit, uint64_t done, uint64_t total) {
     const double fraction = total ? (double)done / (double)total : -1.0;
-    camber_report_progress(report, &(camber_progress_info){stage, fraction, unit, done, total});
+    if (report->bars)
+        camber_progress_show(&report->bar, &(camber_progress_info){stage, fraction, unit, done, total});
 }
 
 /* Copies the message, and replaces the name of the temporary copy by "standard input". */

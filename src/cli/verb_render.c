@@ -49,7 +49,6 @@ static int draw(job *j) {
         status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_input_warn_empty(&j->input, "nothing is drawn");
     camber_report_step(session->report, "tessellating", NULL, 0, 0);
     const double began_ms = camber_now_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
@@ -59,39 +58,26 @@ static int draw(job *j) {
     j->tessellate_ms = camber_now_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
+    if (camber_mesh_get_info(j->mesh).bytes == 0) /* nothing in the picture, or a page of vectors, which has no mesh */
+        camber_input_warn_empty(&j->input, "nothing is drawn");
     status = vector ? camber_picture_write_page(&j->input, j->mesh, &j->output, &j->times)
                     : camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
     j->written_bytes = j->output.size_bytes;
     return status;
 }
 
-static int print_json(const job *j) {
-    const camber_session *session = j->session;
-    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+static void put_counts(const job *j, const camber_scene_info *scene, const camber_mesh_info *mesh, json_t *object) {
     const camber_polylines_stats lines = j->input.drawn;
-    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
-    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
-    uint32_t width, height;
-    find_size(j, &width, &height);
-    json_t *object = json_pack(
-        "{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output", camber_json_text(session->options->output),
-        "width", (json_int_t)width, "height", (json_int_t)height, "output_bytes", camber_json_count(j->written_bytes),
-        "longitude", scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
-        "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
-        session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
-    if (!object)
-        return camber_report_json(session->report, NULL);
-    camber_session_describe(session, object);
     const camber_features_stats read = camber_features_get_stats(j->input.features);
     const struct {
         const char *name;
         size_t count;
     } counts[] = {
-        {"layers", scene.layers},
-        {"features", scene.features},
-        {"polylines", scene.polylines},
-        {"points_in", scene.points_in},
-        {"labels", scene.labels},
+        {"layers", scene->layers},
+        {"features", scene->features},
+        {"polylines", scene->polylines},
+        {"points_in", scene->points_in},
+        {"labels", scene->labels},
         {"closed_rings", read.closed_rings},
         {"turned_rings", read.turned_rings},
         {"empty_rings", read.empty_rings},
@@ -105,15 +91,34 @@ static int print_json(const job *j) {
         {"antimeridian_splits", read.antimeridian_splits},
         {"points", lines.kept_points},
         {"segments", lines.kept_segments},
-        {"joins", mesh.joins},
-        {"vertices", mesh.vertex_count},
-        {"triangles", mesh.triangle_count},
+        {"joins", mesh->joins},
+        {"vertices", mesh->vertex_count},
+        {"triangles", mesh->triangle_count},
         {"draw_calls", j->times.frame.draw_calls},
         {"pieces", j->times.frame.areas},
         {"peak_rss_bytes", camber_peak_rss_bytes()},
     };
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         json_object_set_new(object, counts[i].name, camber_json_count(counts[i].count));
+}
+
+static int print_json(const job *j) {
+    const camber_session *session = j->session;
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    uint32_t width, height;
+    find_size(j, &width, &height);
+    json_t *object = json_pack(
+        "{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output", camber_json_text(session->options->output),
+        "width", (json_int_t)width, "height", (json_int_t)height, "output_bytes", camber_json_count(j->written_bytes),
+        "longitude", scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
+        "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
+        session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
+    if (!object)
+        return camber_report_json(session->report, NULL);
+    camber_session_describe(session, object);
+    put_counts(j, &scene, &mesh, object);
     const struct {
         const char *name;
         double ms;
@@ -182,13 +187,24 @@ static void print_times(const job *j) {
     camber_session_say_memory(j->session);
 }
 
+/* Says how large the picture is: a sheet in mm, other pictures in px. */
+static void put_size(const job *j, char *text, size_t size) {
+    const camber_options *options = j->session->options;
+    uint32_t width, height;
+    find_size(j, &width, &height);
+    if (camber_format_is_vector(options->format))
+        snprintf(text, size, "%.4g x %.4g mm", options->paper_width_mm, options->paper_height_mm);
+    else
+        snprintf(text, size, "%s x %s px", camber_figure_count(width).text, camber_figure_count(height).text);
+}
+
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
-    uint32_t width, height;
-    find_size(j, &width, &height);
+    char size[128];
+    put_size(j, size, sizeof size);
     if (report->verbose)
         print_counts(j, &scene);
     print_rings(j);
@@ -199,8 +215,7 @@ static void print_text(const job *j) {
     if (j->input.attribution)
         camber_report_say(report, "%s", j->input.attribution);
     camber_report_done(report, path[0] == '-' && !path[1] ? "picture" : path, j->written_bytes, j->total_ms,
-                       "%s x %s px, zoom %.2f at %.5f, %.5f", camber_figure_count(width).text,
-                       camber_figure_count(height).text, scene.zoom, scene.longitude, scene.latitude);
+                       "%s, zoom %.2f at %.5f, %.5f", size, scene.zoom, scene.longitude, scene.latitude);
 }
 
 int camber_verb_render(camber_session *session) {

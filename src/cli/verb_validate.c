@@ -31,6 +31,7 @@ static camber_status write_image(void *user, const camber_failure_image *image, 
 /* How long the checks of one input take is not known. */
 static void show_progress(void *user, size_t done, size_t count) {
     const run *r = user;
+    r->session->report->has_steps = count > 1;
     if (count > 1)
         camber_report_step(r->session->report, "checking", "scenes", done, count);
     else

@@ -14,6 +14,9 @@
 
 #include <math.h>
 
+/* How far the chord that gives a glyph its direction reaches to each side of it. */
+static const double CHORD_EM = 0.5;
+
 /* The line in the space in which the text is placed: the plane, or the picture as a pitch shows it. */
 typedef struct text_line {
     const camber_label_layout *layout;
@@ -113,15 +116,38 @@ static void measure(const camber_text *text, camber_label_track *track) {
     track->last = high * track->size + track->shift;
 }
 
-camber_track_point camber_label_track_point(const camber_label_track *track, double distance) {
+/* Computes the point of the line at a distance. */
+static void point_at(const camber_label_track *track, double distance, double at[2]) {
     size_t i = 0;
     while (i + 2 < track->count && track->points[3 * (i + 1) + 2] <= distance)
         i++;
-    const double *a = track->points + 3 * i, *b = a + 3, length = b[2] - a[2];
-    const double t = (distance - a[2]) / length;
-    const double cosine = (b[0] - a[0]) / length, sine = (b[1] - a[1]) / length;
-    return (camber_track_point){a[0] + t * (b[0] - a[0]) - sine * track->side * track->across,
-                                a[1] + t * (b[1] - a[1]) + cosine * track->side * track->across, cosine, sine};
+    const double *a = track->points + 3 * i, *b = a + 3, t = (distance - a[2]) / (b[2] - a[2]);
+    at[0] = a[0] + t * (b[0] - a[0]);
+    at[1] = a[1] + t * (b[1] - a[1]);
+}
+
+/* A glyph has the direction of the chord of the line around it:
+ *
+ *            o              the line turns at a point, but the glyphs
+ *          /   \            around it turn step by step, so they do not
+ *        -- chord --        overlap
+ */
+camber_track_point camber_label_track_point(const camber_label_track *track, double distance) {
+    const double reach = CHORD_EM * track->size;
+    const double low = track->points[2], high = track->points[3 * (track->count - 1) + 2];
+    double at[2], from[2], to[2];
+    point_at(track, distance, at);
+    point_at(track, fmin(fmax(distance - reach, low), distance), from);
+    point_at(track, fmax(fmin(distance + reach, high), distance), to);
+    double x = to[0] - from[0], y = to[1] - from[1], length = camber_length(x, y);
+    if (!(length > 0.0)) { /* the line comes back to where it was */
+        x = track->points[3] - track->points[0];
+        y = track->points[4] - track->points[1];
+        length = camber_length(x, y);
+    }
+    const double cosine = x / length, sine = y / length;
+    return (camber_track_point){at[0] - sine * track->side * track->across,
+                                at[1] + cosine * track->side * track->across, cosine, sine};
 }
 
 /* Computes the direction from the first glyph to the last, as it is seen; for a text of one glyph, the direction of its

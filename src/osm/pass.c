@@ -156,17 +156,20 @@ static void commit(camber_osm_pass *pass) {
     pthread_cond_broadcast(&pass->moved);
 }
 
+/* Tells how much of all passes is done. The count is that share of the blocks, so that it does not begin again with
+ * each pass. */
 static void show_progress(camber_osm_pass *pass, double *shown_ms) {
     const camber_osm_pass_desc *desc = pass->desc;
-    const double now = camber_now_ms(), done = (double)pass->committed / (double)desc->part_count;
+    const double now = camber_now_ms(), done = (double)pass->committed / (double)desc->part_count,
+                 fraction = desc->from + done * (desc->to - desc->from);
     if (now - *shown_ms < PROGRESS_MS)
         return;
     *shown_ms = now;
     pthread_mutex_lock(&pass->context_lock);
     camber_progress_tell(desc->context, &(camber_progress_info){.stage = "reading",
-                                                                .fraction = desc->from + done * (desc->to - desc->from),
+                                                                .fraction = fraction,
                                                                 .unit = "blocks",
-                                                                .done = pass->committed,
+                                                                .done = (uint64_t)(fraction * (double)desc->part_count),
                                                                 .total = desc->part_count});
     pthread_mutex_unlock(&pass->context_lock);
 }

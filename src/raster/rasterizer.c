@@ -14,10 +14,10 @@
 
 /* CHUNK, CHUNKS_MAX: the fewest segments of a chunk, and the most chunks, which are limited because each has a count
  * for every tile. A GPU has more chunks, because it needs many work-items.
- * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells; each
- * walks the list until its row is full. Edges of rings have to be walked to their end. So if there are any, such a tile
- * must also have more than one in SHARES of the segments that each of the device's processors draws, and it must be
- * drawn in one slice, because its rows share the edges that they spill. */
+ * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells, each of
+ * which walks the whole list until its row is full. That takes more work, so it is only done where the processors would
+ * otherwise wait for the tile: if it has more than one in SHARES of the segments that each of them draws. If there are
+ * edges of rings, the tile must also be drawn in one slice, because its rows share the edges that they spill. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
@@ -288,8 +288,8 @@ static camber_status place_spills(camber_raster *raster, camber_spill_args k, bo
 static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
     const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
     const bool at_once = k.is_last && raster->spill_count == 0;
-    return count > HEAVY && !camber_raster_draws_cells(raster) &&
-           (raster->end_edge == 0 || (at_once && SHARES * units * count > raster->starts[raster->tile_count]));
+    return count > HEAVY && !camber_raster_draws_cells(raster) && (raster->end_edge == 0 || at_once) &&
+           SHARES * units * count > raster->starts[raster->tile_count];
 }
 
 static void put_job(camber_raster *raster, size_t job, size_t tile, uint32_t rows) {

@@ -449,25 +449,42 @@ static enum MHD_Result answer_health(request *r) {
                : send_error(r, 503);
 }
 
+/* Returns the maps that have names, or NULL if there is no memory. */
+static camber_map_metrics *list_maps(camber_server *server, uint32_t *count) {
+    camber_map_metrics *maps = calloc(server->desc.map_count, sizeof *maps);
+    *count = 0;
+    pthread_mutex_lock(&server->mutex);
+    for (uint32_t i = 0; maps && i < server->desc.map_count; i++) {
+        const camber_served_map *map = server->maps + i;
+        if (*map->name)
+            maps[(*count)++] = (camber_map_metrics){map->name, map->view.ready, &map->requests};
+    }
+    pthread_mutex_unlock(&server->mutex);
+    return maps;
+}
+
 static enum MHD_Result answer_metrics(request *r) {
     camber_server *server = r->listener->server;
-    const camber_metrics_now now = {.cache = camber_tile_cache_get_stats(server->cache),
+    uint32_t map_count;
+    camber_map_metrics *maps = list_maps(server, &map_count);
+    const camber_metrics_now now = {.maps = maps,
+                                    .map_count = map_count,
+                                    .cache = camber_tile_cache_get_stats(server->cache),
                                     .ready = is_ready(server, CAMBER_ROUTE_NO_MAP),
                                     .in_flight = server->in_flight,
                                     .uptime_s = 1e-3 * (camber_now_ms() - server->start_ms)};
     char *text = NULL;
     size_t size_bytes = 0;
-    FILE *file = open_memstream(&text, &size_bytes);
-    if (!file)
-        return MHD_NO;
-    server->metrics.connections = camber_clients_count(server->clients);
-    camber_metrics_write(&server->metrics, &now, file);
-    if (fclose(file) != 0) {
-        free(text);
-        return MHD_NO;
+    FILE *file = maps ? open_memstream(&text, &size_bytes) : NULL;
+    enum MHD_Result result = MHD_NO;
+    if (file) {
+        server->metrics.connections = camber_clients_count(server->clients);
+        camber_metrics_write(&server->metrics, &now, file);
+        if (fclose(file) == 0)
+            result = send_text(r, text, size_bytes, "text/plain; version=0.0.4; charset=utf-8");
     }
-    const enum MHD_Result result = send_text(r, text, size_bytes, "text/plain; version=0.0.4; charset=utf-8");
     free(text);
+    free(maps);
     return result;
 }
 
@@ -704,6 +721,14 @@ static void log_request(const request *r) {
     server->desc.log_request(server->desc.user, text);
 }
 
+/* Counts a request for its map, if its path belongs to a map that has a name. */
+static void count_request(camber_server *server, const request *r) {
+    const bool is_of_map = r->route.route != CAMBER_ROUTE_NONE && r->route.map < server->desc.map_count;
+    camber_served_map *map = is_of_map ? server->maps + r->route.map : NULL;
+    camber_metrics_count_request(map && *map->name ? &map->requests : &server->metrics.requests, r->route.route,
+                                 r->status);
+}
+
 void camber_request_end(void *user, struct MHD_Connection *connection, void **state,
                         enum MHD_RequestTerminationCode code) {
     camber_listener *listener = user;
@@ -713,7 +738,7 @@ void camber_request_end(void *user, struct MHD_Connection *connection, void **st
     (void)code;
     if (!r)
         return;
-    camber_metrics_count_request(&server->metrics, r->route.route, r->status);
+    count_request(server, r);
     server->metrics.sent_bytes += r->sent_bytes;
     if (server->desc.log_request && server->desc.logs_requests)
         log_request(r);

@@ -39,6 +39,7 @@ typedef struct camber_served_map {
     void (*close_reader)(void *owner);
     void *reader_owner;
     char title[256]; /* guarded by the server's mutex */
+    camber_request_counts requests;
 } camber_served_map;
 
 /* A socket that listens, and which requests it serves. */

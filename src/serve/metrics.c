@@ -10,11 +10,11 @@ static const int statuses[CAMBER_STATUS_KINDS - 1] = {200, 204, 304, 308, 400, 4
 static const double ends_s[CAMBER_HISTOGRAM_BUCKETS] = {0.0005, 0.001, 0.0025, 0.005, 0.01,
                                                         0.025,  0.05,  0.1,    0.25,  1.0};
 
-void camber_metrics_count_request(camber_metrics *metrics, camber_route route, int status) {
+void camber_metrics_count_request(camber_request_counts *counts, camber_route route, int status) {
     int kind = 0;
     while (kind < CAMBER_STATUS_KINDS - 1 && statuses[kind] != status)
         kind++;
-    metrics->requests[route][kind]++;
+    counts->of[route][kind]++;
 }
 
 void camber_histogram_observe(camber_histogram *histogram, double seconds) {
@@ -36,18 +36,37 @@ static void write_one(FILE *file, const char *name, const char *type, const char
     fprintf(file, "camber_%s %.15g\n", name, value);
 }
 
-static void write_requests(camber_metrics *metrics, FILE *file) {
-    begin(file, "requests_total", "counter", "Requests that were answered, by route and status.");
+/* label: of the map, with a comma; or "". */
+static void write_counts(const camber_request_counts *counts, const char *label, FILE *file) {
     for (int route = 0; route < CAMBER_ROUTES; route++)
         for (int kind = 0; kind < CAMBER_STATUS_KINDS; kind++) {
-            const uint64_t count = metrics->requests[route][kind];
+            const uint64_t count = counts->of[route][kind];
             char status[16] = "other";
             if (kind < CAMBER_STATUS_KINDS - 1)
                 snprintf(status, sizeof status, "%d", statuses[kind]);
             if (count)
-                fprintf(file, "camber_requests_total{route=\"%s\",status=\"%s\"} %" PRIu64 "\n",
+                fprintf(file, "camber_requests_total{%sroute=\"%s\",status=\"%s\"} %" PRIu64 "\n", label,
                         camber_route_get_name((camber_route)route), status, count);
         }
+}
+
+/* The names of maps have letters, digits, '-', '_' and '/', so nothing in a label has to be escaped. */
+static void write_requests(const camber_metrics *metrics, const camber_metrics_now *now, FILE *file) {
+    begin(file, "requests_total", "counter", "Requests that were answered, by map, route and status.");
+    write_counts(&metrics->requests, "", file);
+    for (uint32_t i = 0; i < now->map_count; i++) {
+        char label[256];
+        snprintf(label, sizeof label, "map=\"%s\",", now->maps[i].name);
+        write_counts(now->maps[i].requests, label, file);
+    }
+}
+
+static void write_ready(const camber_metrics_now *now, FILE *file) {
+    write_one(file, "ready", "gauge", "Whether the input has been read.", now->ready);
+    if (now->map_count)
+        begin(file, "map_ready", "gauge", "Whether the input of a map has been read.");
+    for (uint32_t i = 0; i < now->map_count; i++)
+        fprintf(file, "camber_map_ready{map=\"%s\"} %d\n", now->maps[i].name, now->maps[i].ready);
 }
 
 static void write_histogram(camber_histogram *histogram, FILE *file, const char *name, const char *help) {
@@ -73,9 +92,9 @@ static double resident_bytes(void) {
 }
 
 void camber_metrics_write(camber_metrics *metrics, const camber_metrics_now *now, FILE *file) {
-    write_one(file, "ready", "gauge", "Whether the input has been read.", now->ready);
+    write_ready(now, file);
     write_one(file, "uptime_seconds", "gauge", "Seconds since the server began to listen.", now->uptime_s);
-    write_requests(metrics, file);
+    write_requests(metrics, now, file);
     write_one(file, "sent_bytes_total", "counter", "Bytes of answers, without their headers.",
               (double)metrics->sent_bytes);
     write_one(file, "requests_in_flight", "gauge", "Requests that are not answered yet, including this one.",

@@ -207,7 +207,8 @@ static const char *take_picture(cursor *c, camber_route_request *r) {
     if (!take_count(c, &r->width) || !take(c, "x") || !take_count(c, &r->height) || r->width < 1 || r->height < 1)
         return "the size after the view is WIDTHxHEIGHT, in whole px from 1 to 99999999";
     if (!take_ending(c, r) || r->type > CAMBER_ROUTE_WEBP)
-        return "the path ends in [@Rx].png or [@Rx].webp, with R a whole number";
+        return r->type == CAMBER_ROUTE_JPEG ? "pictures are not drawn as JPEG; ask for .png or .webp"
+                                            : "the path ends in [@Rx].png or [@Rx].webp, with R a whole number";
     return NULL;
 }
 
@@ -296,9 +297,34 @@ static bool take_of_map(cursor *c, const camber_route_limits *limits, camber_rou
              take_word(c, "events", CAMBER_ROUTE_EVENTS, r) || take_word(c, "metrics", CAMBER_ROUTE_METRICS, r)));
 }
 
+static const char STYLES[] = "styles/", SMALL_TILES[] = "256/";
+
+/* Parses tileserver-gl's paths of the tiles and pictures of a map that has a name: /styles/NAME/... They are further
+ * names of the map's own paths. A map that is itself called styles has precedence. */
+static bool take_alias(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    cursor rest = *c;
+    if (find_map(c, limits, r) || !take(&rest, STYLES))
+        return false;
+    const size_t length = find_map(&rest, limits, r);
+    rest.at += length;
+    if (!length || !take(&rest, "/"))
+        return false;
+    *c = rest;
+    return true;
+}
+
+static bool take_of_alias(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
+    if (take(c, "static/"))
+        return take_static(c, r);
+    (void)take(c, SMALL_TILES);
+    return take_tile(c, limits, r);
+}
+
 static bool take_path(cursor *c, const camber_route_limits *limits, camber_route_request *r) {
     if (!take(c, "/"))
         return false;
+    if (take_alias(c, limits, r))
+        return take_of_alias(c, limits, r);
     const size_t length = find_map(c, limits, r);
     c->at += length;
     if (length && c->at == c->end) {

@@ -12,7 +12,8 @@
  *     /health   /events   /metrics
  *
  * /dark before the path of a tile, a picture or tiles.json selects the built-in style's dark theme. If maps have names,
- * these paths, except /metrics, begin with /NAME, and / is a page that lists the maps. There are no other paths: URLs
+ * these paths, except /metrics, begin with /NAME, and / is a page that lists the maps; tiles and pictures also have
+ * tileserver-gl's paths, /styles/NAME/[256/]{z}/{x}/{y}... and /styles/NAME/static/... There are no other paths: URLs
  * are never mapped to file paths. */
 #ifndef CAMBER_SERVE_ROUTE_H
 #define CAMBER_SERVE_ROUTE_H

@@ -494,6 +494,15 @@ bool camber_expression_begin(camber_compiler *c, json_t *json) {
     return c->status == CAMBER_ERROR_MEMORY ? false : camber_compiler_fail_memory(c);
 }
 
+/* Most of a style's expressions are constants of one node, but the array began with room for more. */
+static void trim_nodes(camber_expression *e) {
+    camber_node *trimmed = camber_resize_quietly(e->context, e->nodes, e->node_count * sizeof *e->nodes);
+    if (!trimmed)
+        return;
+    e->nodes = trimmed;
+    e->node_capacity = e->node_count;
+}
+
 bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_expression **expression) {
     camber_expression *e = c->expression;
     c->expression = NULL;
@@ -501,6 +510,7 @@ bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_
         camber_expression_destroy(c->context, e);
         return false;
     }
+    trim_nodes(e);
     e->root = root;
     e->reads_zoom = e->nodes[root].reads_zoom;
     e->reads_feature = e->nodes[root].reads_feature;

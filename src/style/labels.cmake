@@ -118,7 +118,7 @@ foreach(kind street_small street street_main)
   set(label_layout_${kind} "${label_along}\"symbol-spacing\": 100, ")
   set(label_repeat_${kind} 320)
 endforeach()
-string(REPLACE "\"text-max-angle\": 40, \"text-padding\": 4" "\"text-max-angle\": 60, \"text-padding\": 2" label_layout_street_main
+string(REPLACE "\"text-max-angle\": 40, \"text-padding\": 4" "\"text-max-angle\": 45, \"text-padding\": 2" label_layout_street_main
        "${label_layout_street_main}")
 set(label_repeat_halt 100)
 set(label_layout_shield "\"symbol-placement\": \"line\", \"symbol-spacing\": 600, \"text-rotation-alignment\": \"viewport\",
@@ -201,8 +201,9 @@ set(label_ref "[\"to-string\", [\"coalesce\", [\"get\", \"ref\"], [\"get\", \"sh
 set(label_text_shield "[\"let\", \"ref\", ${label_ref},
                 [\"case\", [\"in\", \"\\u003b\", [\"var\", \"ref\"]], [\"slice\", [\"var\", \"ref\"], 0, [\"index-of\", \"\\u003b\", [\"var\", \"ref\"]]], [\"var\", \"ref\"]]]")
 
-# Whether a road has a number.
-set(label_has_ref "[\">\", [\"length\", ${label_ref}], 0]")
+# Whether a road has a number: a short text, or one without small letters. A name would make a shield as long as a sign.
+set(label_has_ref "[\"all\", [\">\", [\"length\", ${label_ref}], 0],
+                [\"any\", [\"<=\", [\"length\", ${label_ref}], 5], [\"==\", ${label_ref}, [\"upcase\", ${label_ref}]]]]")
 
 # Filters that use OpenStreetMap's keys. Many places are both a point and an area; the point is where the name belongs.
 set(label_road "${osm_class}")
@@ -219,7 +220,7 @@ match_any(label_osm_stream "[\"get\", \"waterway\"]" ${city_rivers})
 set(label_osm_house "[\"has\", \"addr:housenumber\"]")
 # Basins of fountains, ponds and the like have names that matter only close up.
 match_any(label_is_water "[\"get\", \"natural\"]" water)
-match_any(label_is_lake "[\"get\", \"water\"]" lake reservoir lagoon river harbour basin)
+match_any(label_is_lake "[\"get\", \"water\"]" lake reservoir lagoon river harbour)
 set(label_osm_pond "[\"all\", ${label_is_water}, [\"!\", ${label_is_lake}], [\"!\", [\"has\", \"amenity\"]]]")
 match_any(label_is_bay "[\"get\", \"natural\"]" bay strait)
 set(label_osm_lake "[\"any\", ${label_is_bay}, [\"all\", ${label_is_water}, ${label_is_lake}]]")

@@ -24,6 +24,8 @@ SHORT_M = 250.0  # routes that are together for less only cross
 STEP_M = 20.0  # between vertices of a street
 SAMPLE_M = 5.0
 FINE_M = 0.1
+BEND_M = 140.0  # of a branch, in which it bends to join its trunk
+BEND_STEPS = 16
 TAPER_M = 90.0  # of a stretch, in which a route moves from one slot to another
 TAPER_STEPS = 10
 STATION_M = 300.0  # stops of one name that are closer belong to the same station
@@ -233,6 +235,34 @@ def direct(lines, streets):
     return [(line[::-1] if turned[n] else line, kind) for n, (line, kind, _) in enumerate(lines)]
 
 
+def untangle(streets):
+    """Leaves one way through a triangle that a route goes around on both sides: the edge, or the detour by a corner from
+    which the route goes nowhere else, if other routes take the detour."""
+    around = collections.defaultdict(set)
+    for a, b in streets.edges:
+        around[a].add(b)
+        around[b].add(a)
+
+    def routes(a, b):
+        return streets.edges[min(a, b), max(a, b)][0]
+
+    for a, b in sorted(streets.edges):
+        for c in sorted(around[a] & around[b]):
+            common = routes(a, b) & routes(b, c) & routes(a, c)
+            for route in sorted(common, key=order_of):
+                for corner, left, right in ((a, b, c), (b, a, c), (c, a, b)):
+                    if {other for other in around[corner] if route in routes(corner, other)} != {left, right}:
+                        continue
+                    if (routes(corner, left) & routes(corner, right)) - common:
+                        routes(left, right).discard(route)
+                    else:
+                        routes(corner, left).discard(route)
+                        routes(corner, right).discard(route)
+                    break
+    for edge in [edge for edge, its in streets.edges.items() if not its[0]]:
+        del streets.edges[edge]
+
+
 def smooth(streets):
     """Moves each vertex towards the middle of the two neighbours that it is most nearly in line with."""
     around = collections.defaultdict(list)
@@ -276,6 +306,42 @@ def simplified(points):
         return [points[0], points[-1]]
     middle = far.index(max(far)) + 1
     return simplified(points[:middle + 1])[:-1] + simplified(points[middle:])
+
+
+def bent(points, ways):
+    """Returns a line that leaves its ends in the given directions, None for any: a branch joins its trunk gradually."""
+    for way in ways:
+        far = along(points)
+        reach = min(BEND_M, far[-1] / 2)
+        if way is not None and reach > STEP_M:
+            rest = part(points, far, reach, far[-1])
+            (x0, y0), (x1, y1), (x2, y2) = points[0], rest[0], rest[1]
+            length = math.dist(rest[0], rest[1]) or 1
+            ux, uy, vx, vy = math.cos(way) * reach, math.sin(way) * reach, (x2 - x1) / length * reach, (y2 - y1) / length * reach
+            curve = []
+            for t in (k / BEND_STEPS for k in range(BEND_STEPS)):
+                a, b, c, d = 2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, 3 * t**2 - 2 * t**3, t**3 - t**2
+                curve.append((a * x0 + b * ux + c * x1 + d * vx, a * y0 + b * uy + c * y1 + d * vy))
+            points = curve + rest
+        points = points[::-1]
+    return points
+
+
+def trunks(lines, streets):
+    """Returns, for each line, the directions in which its two ends must leave so that they go on straight in the line
+    with the most routes there, or None."""
+    ends, found = ends_at(lines), []
+    for number, (line, (routes, _)) in enumerate(lines):
+        ways = []
+        for end in (0, 1):
+            heading = heading_of(line, end, streets)
+            on = [(-len(lines[other][1][0]), math.cos(heading - there), there) for other, other_end in ends[line[-end]]
+                  if other != number and routes & lines[other][1][0]
+                  for there in [heading_of(lines[other][0], other_end, streets)]]
+            most, cosine, there = min(on, default=(0, 0, 0))
+            ways.append(there + math.pi if -most > len(routes) and cosine < -0.6 else None)
+        found.append(ways)
+    return found
 
 
 def slots_of(routes):
@@ -367,10 +433,12 @@ def features(ways, routes, stops):
             line, tags = ways[way]
             in_tunnel = tags.get("tunnel", "no") != "no"
             streets.add([(x * east_m, y * north_m) for x, y in line], along[way], in_tunnel)
+        untangle(streets)
         smooth(streets)
         lines = direct(stretches(streets), streets)
-        for (line, (here, in_tunnel)), (first, last) in zip(lines, slots_at_ends(lines, streets)):
-            points = rounded([streets.at[vertex] for vertex in line])
+        for (line, (here, in_tunnel)), (first, last), ways_out in zip(lines, slots_at_ends(lines, streets),
+                                                                      trunks(lines, streets)):
+            points = bent(rounded([streets.at[vertex] for vertex in line]), ways_out)
             refs = "  ".join(dict.fromkeys(it.ref for it in sorted(here, key=order_of) if it.ref))
             for route, slot in slots_of(here).items():
                 for places, its_slot, is_taper in tapered(points, slot, first.get(route, slot), last.get(route, slot)):
@@ -403,4 +471,5 @@ def main():
               ensure_ascii=False, separators=(",", ":"))
 
 
-main()
+if __name__ == "__main__":
+    main()

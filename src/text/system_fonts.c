@@ -45,9 +45,23 @@ const char *camber_font_pattern_name(const FcPattern *pattern) {
     return full ? full : get_string(pattern, FC_FAMILY, 0);
 }
 
+/* The file of fontconfig's configuration; NULL: there is none. Newer versions look for it by reading it, and complain,
+ * unless they are asked with a configuration at hand. */
+static FcChar8 *find_config(void) {
+#if FC_VERSION >= 21391
+    FcConfig *empty = FcConfigCreate();
+    FcChar8 *path = empty ? FcConfigGetFilename(empty, NULL) : NULL;
+    if (empty)
+        FcConfigDestroy(empty);
+    return path;
+#else
+    return FcConfigFilename(NULL);
+#endif
+}
+
 /* A system without fontconfig's configuration has no fonts for it to find, and it would complain on standard error. */
 static FcConfig *reference_config(void) {
-    FcChar8 *path = FcConfigFilename(NULL);
+    FcChar8 *path = find_config();
     FcConfig *config = path ? FcConfigReference(NULL) : NULL;
     FcStrFree(path);
     return config;

@@ -389,7 +389,12 @@ mutant strip kernels/bins.cl "boxes of two tiles without the second" 'count += b
 mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[list] + to->own[list]++]' \
     'to->lists[to->starts[list + 1] - 1u - to->own[list]++]'
-mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++' 'k + 1u < count; k++'
+mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++) {
+        const ulong cells = sets->partial[k] & ~shut, nears' 'k + 1u < count; k++) {
+        const ulong cells = sets->partial[k] & ~shut, nears'
+mutant strip kernels/rasterize_sixteen.cl "cells filled by segments that only touch them" 'f->cells |= cells & inside' \
+    'f->cells |= cells'
+mutant strip kernels/rasterize_sixteen.cl "caps at both ends" '(p->goes_on_b ? none : at_b)' '(p->goes_on_a ? none : at_b)'
 mutant strip kernels/rasterize_sixteen.cl "flat joins taken for caps" 'joined_a | joined_b' 'joined_a'
 mutant strip kernels/rasterize_sixteen.cl "caps at the other end" 'p->flat_b - at->past_b' 'p->flat_a - at->past_b'
 level=(--full) # 1, 8 and 16 lanes
@@ -427,6 +432,8 @@ mutant strip kernels/tile_state.h "what lies below shines through" 'c->level[lev
 mutant strip kernels/tile_state.h "united lines: areas that are not summed" 'c->sums[i][0][v] += ' 'c->sums[i][0][v] = '
 mutant strip kernels/tile_state.h "cells that keep what they had" 'cells & ~c->brushed; left' 'cells & c->brushed; left'
 mutant strip kernels/cells.h "cells that are whole too soon" 'h - p->side.extent - reach : always' 'h - p->side.extent : always'
+mutant strip kernels/cells.h "cells that a cap reaches" 'CAMBER_LESS(p->flat_b, h) + CAMBER_PAD_PX + reach_b' \
+    '-CAMBER_PAD_PX - reach_b'
 mutant strip kernels/cells.h "cells beside the line" 'h + p->side.extent + reach + bend' '0.5f * h'
 mutant strip kernels/stroke_setup.inl "the slope of an edge" 'slope = safe * scale' 'slope = 0.8f * safe * scale'
 level=(--full) # every join and cap

@@ -392,8 +392,10 @@ static void test_parts(void **state) {
         camber_made_scene_walk(&s, &seed, 3 + camber_random_below(&seed, 90), (const double[]){0.3, 12}, 1.2);
         camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
-    static const camber_device_desc descs[] = {
-        {.largest_buffer_bytes = 70000}, {.memory_bytes = 700000}, {.memory_bytes = 2 << 20}};
+    static const camber_device_desc descs[] = {{.largest_buffer_bytes = 70000},
+                                               {.memory_bytes = 700000},
+                                               {.memory_bytes = 2 << 20},
+                                               {.match = "opencl", .largest_buffer_bytes = 70000}};
     camber_polylines *polylines = scene_polylines(b->context, &s);
     const camber_tessellation_desc desc = {
         .strokes = strokes, .stroke_count = CAMBER_KERNEL_ROWS, .has_arc_length = true};

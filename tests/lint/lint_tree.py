@@ -628,6 +628,7 @@ LIBRARIES = {
     "cairo": ("libcairo2-dev", "pkgconfig(cairo)", "cairo"), "cairo-ft": None, "cairo-pdf": None, "cairo-svg": None,
     "freetype2": None,
     "meshoptimizer": ("libmeshoptimizer-dev", "cmake(meshoptimizer)", "meshoptimizer"),
+    "Leaflet": ("libjs-leaflet", "leaflet-1.9.4.tgz", "leaflet-1.9.4.tgz"),  # src/serve/page.cmake
 }
 # Where a release's version stands besides CMakeLists.txt, and the file's place in LIBRARIES.
 PACKAGINGS = (
@@ -667,6 +668,7 @@ def check_packages(tree):
     used |= set(re.findall(r"\bpkg_check_modules\(\w+ .*IMPORTED_TARGET ([a-z][\w-]*)", cmake))
     used |= set(re.findall(r"^ *camber_optional_library\(\w+ CAMBER_\w+ (\S+)", cmake, re.M))
     used |= set(re.findall(r"\bfind_program\(\w+ ([\w-]+) REQUIRED", cmake))
+    used |= {"Leaflet"} if tree.has("src/serve/page.cmake") else set()
     yield from check_options(tree, cmake)
     for name in sorted(used - set(LIBRARIES)):
         yield Finding("CMakeLists.txt", 1, "%s is new to the packages" % name,

@@ -30,6 +30,7 @@ use() { # TREE
     local tree=$1 package status=0
     python3 -m venv --system-site-packages env
     . env/bin/activate
+    test -e "$tree"/dist/camber-*-manylinux_2_28_"$(uname -m)".whl # what docs/releasing.md promises
     pip -q install --no-index --disable-pip-version-check "$tree"/dist/camber-*.whl
     package=$(python -c 'import importlib.util, os; print(os.path.dirname(importlib.util.find_spec("camber").origin))')
     # Everything comes from the wheel but the C library.
@@ -42,7 +43,10 @@ use() { # TREE
     camber --version
     camber info | tee info
     grep 'kernels compiled ahead' info
-    draw camber "$tree" "$PWD/drawn"
+    local said=$PWD/said # what is bundled knows what the system configures
+    draw camber "$tree" "$PWD/drawn" 2>"$said"
+    cat "$said" >&2
+    if grep -i fontconfig "$said"; then exit 1; fi
     camber render "$tree/tests/data/monaco/monaco.osm.pbf" --paper A5 -o monaco.pdf
     head -c 4 monaco.pdf | grep PDF
     camber tessellate streets.geojson --style roads -o streets.glb # areas need GLU, which needs GL
@@ -77,6 +81,10 @@ GPX
     camber render track.gpx -o track.png
     od -An -c -N4 track.png | grep 'P   N   G'
     camber info | grep 'GDAL  *GDAL 3'
+    # GDAL brought the system's configuration of fontconfig.
+    test -e /etc/fonts/fonts.conf
+    camber render drawn/streets.geojson -o streets.png 2>said
+    if grep -i fontconfig said; then exit 1; fi
 }
 
 "$action" "$@"

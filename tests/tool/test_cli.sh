@@ -23,6 +23,7 @@ mkdir "$POCL_CACHE_DIR"
 cd "$tmp/out" || exit 1
 checks=0
 failures=0
+peaks=()
 
 fail() {
     failures=$((failures + 1))
@@ -391,6 +392,31 @@ adds_up
 expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
 has "$tmp/stdout" '"draw_calls": 0,' '"start_ms": [0-9]'
 rm -f calls.png
+# A system without fontconfig's configuration has no fonts to find, and nothing is said of that.
+run env FONTCONFIG_FILE="$tmp/none" "$tool" render "$osm" -qfo calls.png --size 600x400
+verify 0
+[ ! -s "$tmp/stderr" ] || fail "says $(head -c 300 "$tmp/stderr")"
+rm -f calls.png
+# A picture of up to 2^22 pixels is drawn where it is compressed, without a copy of its 16 MB in between.
+if [ -n "$faulty" ]; then
+    for size in 2048x2048 2049x2048; do
+        expect 0 "memory of $size" render "$osm" --no-labels -o large.png -f --size $size --draw cl --json
+        peaks+=("$(sed -n 's/.*"peak_rss_bytes": \([0-9]*\).*/\1/p' "$tmp/stdout")")
+    done
+    [ $((peaks[0] + (4 << 20))) -lt "${peaks[1]}" ] || fail "as much as with a copy: ${peaks[*]} bytes"
+    rm large.png
+fi
+cat >"$tmp/in/refs.geojson" <<'JSON'
+{"type": "FeatureCollection", "features": [
+ {"type": "Feature", "properties": {"highway": "primary", "ref": "D 6007"},
+  "geometry": {"type": "LineString", "coordinates": [[7.40, 43.73], [7.44, 43.73]]}},
+ {"type": "Feature", "properties": {"highway": "primary", "ref": "Route de Menton"},
+  "geometry": {"type": "LineString", "coordinates": [[7.40, 43.72], [7.44, 43.72]]}}]}
+JSON
+expect 0 "a number has a shield, a name has none" render "$tmp/in/refs.geojson" --style city --center 7.42,43.725 \
+    --zoom 13 --size 300x300 -o refs.png -v
+says ' 1 label,'
+rm -f refs.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))
@@ -1349,6 +1375,7 @@ name="SIGINT in the middle"
 for delay in 0.02 0.05 0.1 0.15 0.2 0.3 0.5; do
     "$tool" render "$osm" -o a.png --size 4000x4000 2>"$tmp/stderr" &
     job=$!
+    while [ "/proc/$job/exe" -ef "$BASH" ]; do :; done # which would remove $tmp if the signal reached it
     sleep $delay
     kill -INT $job 2>/dev/null
     wait $job

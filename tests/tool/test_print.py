@@ -105,7 +105,10 @@ heads = dict(chunks(png))
 width, height = struct.unpack(">II", heads[b"IHDR"][:8])
 expect((width, height) == (round(105 / MM * DPI), round(148 / MM * DPI)), f"A6 has {width} x {height} px")
 expect(struct.unpack(">IIB", heads[b"pHYs"]) == (5906, 5906, 1), "a PNG tells its density")
-expect(b"pHYs" not in dict(chunks(render("plain.png", "--size", "64x64"))), "a PNG without paper tells none")
+for ratio, per_metre in ("1", 3780), ("2", 7559):
+    plain = dict(chunks(render("plain.png", "--size", "64x64", "--ratio", ratio)))
+    expect(struct.unpack(">IIB", plain[b"pHYs"]) == (per_metre, per_metre, 1),
+           "a PNG without paper has 96 px per inch, times its ratio")
 dense = dict(chunks(render("dense.png", "--size", "64x64", "--dpi", "300")))
 expect(struct.unpack(">IIB", dense[b"pHYs"]) == (11811, 11811, 1) and struct.unpack(">I", dense[b"IHDR"][:4]) == (64,),
        "--dpi alone is the density of a picture")
@@ -153,6 +156,34 @@ if have("pdftocairo"):
                    check=True)
     mean, far = difference(picture, os.path.join(FOLDER, "drawn.png"))
     expect(mean < 0.6 and far < 0.002, f"a PDF differs by {mean:.3f} levels, and far in {far:.5f}")
+
+said = run("render", MONACO, "-o", os.path.join(FOLDER, "size.pdf"), *VIEW).stderr
+expect("size.pdf: 105 x 148 mm, zoom 15.00 at " in said, said)
+
+# ---- Every label of a PDF is found ----
+
+NAMES = ["Île Saint-Honorat", "Groß-Gerau", "Αθήνα", "Санкт-Петербург", "Łódź-Żabieniec", "office fluffy"]
+PLACES = [(f"{NAMES[i % 6]} {i}", {"type": "Point", "coordinates": [0.02 * (i % 6) + 0.01, 0.006 * (i // 6) + 0.004]})
+          for i in range(60)]
+PLACES += [(f"Rue de l’Église {i}", {"type": "LineString", "coordinates": [[0.002, 0.07 + 0.008 * i], [
+    0.06, 0.074 + 0.01 * i], [0.118, 0.071 + 0.008 * i]]}) for i in range(5)]
+LABELS = {"version": 8, "sources": {"names": {"type": "geojson", "data": {"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"name": name}, "geometry": geometry} for name, geometry in PLACES]}}}, "layers": [
+        {"id": "points", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "Point"],
+         "layout": {"text-field": ["get", "name"], "text-size": 11, "text-max-width": 30}},
+        {"id": "lines", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "LineString"],
+         "layout": {"text-field": ["get", "name"], "text-size": 12, "symbol-placement": "line-center",
+                    "text-font": ["Noto Sans Italic"]}}]}
+if have("pdftotext"):
+    with open(os.path.join(FOLDER, "labels.json"), "w", encoding="utf-8") as file:
+        json.dump(LABELS, file)
+    named = os.path.join(FOLDER, "labels.pdf")
+    told = run("render", "--style", os.path.join(FOLDER, "labels.json"), "-o", named, "--size", "900x900", "--bbox",
+               "0,0,0.12,0.12", "--json")
+    expect(json.loads(told.stdout)["labels"] == len(PLACES), f"all labels are placed: {told.stdout}")
+    text = subprocess.run(["pdftotext", named, "-"], capture_output=True, text=True).stdout
+    for name, _ in PLACES:
+        expect(name in " ".join(text.split()), f"{name} is found")
 
 # ---- SVG ----
 

@@ -422,6 +422,18 @@ def test_maps():
     for path in ("/" + tile, "/tiles.json", "/none/" + tile, "/aa/" + tile, "/a" + tile, "/metrics", "/a/metrics", "//a/" + tile):
         expect(server.get(path)[0] == 404, path)
 
+    # tileserver-gl's paths of a map's tiles and pictures, and requests by map.
+    view = "static/0,0,1/90x60@2x.png?path=0,0|10,10"
+    for path, alias in (view, view), (tile, tile), (tile, "256/" + tile):
+        expect(server.get(f"/styles/b/{alias}")[2] == server.get(f"/b/{path}")[2], alias)
+    status, _, body = server.get("/styles/b/static/0,0,1/90x60.jpg")
+    expect(status == 400 and b"not drawn as JPEG" in body, body)
+    expect(server.get(f"/styles/none/{tile}")[0] == 404 and server.get("/styles/b/health")[0] == 404, "no aliases")
+    counted = server.get("/metrics", port=server.metrics_port)[2].decode()
+    expect(re.search(r'^camber_requests_total{map="b",route="static",status="200"} 2$', counted, re.M), counted)
+    expect('camber_requests_total{map="x-1/dark",route="tile",status="200"}' in counted and
+           'camber_map_ready{map="x-1/dark"} 1' in counted and 'camber_requests_total{route="none"' in counted, counted)
+
     # Two are replaced: one by something else, and one by a broken file, which is named; the other maps stay as they were.
     hits = server.metric("cache_tiles")
     write_map("a.json", seed=9)

@@ -13,6 +13,9 @@ folder=$(mktemp -d)
 mkdir -p "$folder/SOURCES" "$folder/tree/camber-$version"
 cp -r "$source"/{pyproject.toml,setup.py,LICENSE,python,docs} "$folder/tree/camber-$version"
 tar -C "$folder/tree" -czf "$folder/SOURCES/camber-$version.tar.gz" "camber-$version"
+mkdir -p "$folder/tree/package/dist" # npm's archive of Leaflet, of which the build has its own
+echo BSD >"$folder/tree/package/LICENSE"
+tar -C "$folder/tree" -czf "$folder/SOURCES/$(sed -n 's|^Source1:.*/||p' "$source/packaging/camber.spec")" package
 # Whoever has installed from this folder wants to uninstall that.
 manifest=$build/install_manifest.txt
 [ ! -f "$manifest" ] || mv "$manifest" "$folder/manifest"

@@ -70,6 +70,9 @@ def test_bar():
     check(any(re.match(r"finding where lines are \[", line) for line in whiles), said)
     check(re.fullmatch(r"a.pmtiles: \d+ tiles, zooms \d+ to \d+, " + SIZE + r", [\d.]+ s", kept[-1]), said)
     check(not any("[" in line for line in kept), said)
+    for line in whiles: # the count is as far as the bar, also where a file is read several times
+        read = re.match(r"reading .* (\d+) %  (\d+) of (\d+) blocks", line)
+        check(not read or abs(int(read[1]) / 100 * int(read[3]) - int(read[2])) <= 1, line)
     # A run that finds its tiles done, merge and verify end with a line, too.
     for arguments, last in ((["tiles", MAP, "-o", "a.pmtiles", "--max-zoom", 13, "--resume"], "a.pmtiles: is complete; nothing to do, "),
                             (["tiles", "verify", "a.pmtiles"], "a.pmtiles: no problem found in "),
@@ -92,6 +95,7 @@ def test_results():
     said = on_terminal("validate", "--only", "roads", "--method", "strip", "--windows", 8, "--draw", "cl", both=True)
     kept, whiles = shown(said)
     check(any(re.fullmatch(r"checking        \[#* *\] +\d+ %  \d+ of \d+ scenes.*", line) for line in whiles), said)
+    check(not any(line.startswith("drawing") for line in whiles), "one bar, and not that of each picture")
     results = [line for line in kept if line.startswith("ok ")]
     check(results and kept[0] == "TAP version 14" and kept[-1].startswith("validate: "), said)
     check(not any("checking" in line for line in kept), said)

@@ -72,12 +72,37 @@ expect(alone["slot"] == 0 and alone["tunnel"] and not shared["tunnel"], "a route
 expect((rest[0][0] < rest[-1][0]) == (along[0][0] < along[-1][0]), "stretches that go on have one direction")
 (branch, turn), = [it for it in those("2") if it[0]["routes"] == 1]
 expect(branch["slot"] == 0 and abs(max(turn)[1] - 0.01) < 0.0001, "a branch")
+near = min((it["geometry"]["coordinates"] for it in features if it["properties"].get("ref") == "2" and it["properties"]["routes"] == 1),
+           key=lambda line: min(abs(x - 0.01) + abs(y) for x, y in line))
+near = near if abs(near[0][0] - 0.01) < abs(near[-1][0] - 0.01) else near[::-1]
+expect(abs(near[1][1] - near[0][1]) < 0.3 * (near[1][0] - near[0][0]), "a branch leaves its trunk gradually")
 slots = tapers("1", 2) + tapers("1", 1)
 steps = [abs(b - a) for a, b in zip([-0.5] + slots, slots + [0])]
 expect(len(slots) == 20 and slots == sorted(slots) and max(steps) < 0.1, "route 1 moves over in small steps where 2 leaves")
 (crossing, across), = those("3")
 expect(crossing["slot"] == 0 and crossing["state"] == "construction" and "colour" not in crossing, "what crosses")
 expect(abs(abs(across[0][1] - across[-1][1]) - 0.02) < 0.0001, "what crosses is one line")
+PY
+python3 - "$script" <<'PY'
+import runpy
+import sys
+import types
+
+script = runpy.run_path(sys.argv[1])
+n, b = (script["Route"]("subway", "", ref, "", "") for ref in "NB")
+
+
+def untangled(edges):
+    streets = types.SimpleNamespace(edges={edge: [set(routes), 0, 1] for edge, routes in edges.items()})
+    script["untangle"](streets)
+    return {edge: its[0] for edge, its in streets.edges.items()}
+
+
+# N goes from 1 to 4, past the triangle 1, 2, 3. It keeps to the edge, or to the detour by 2 if B goes there.
+alone = untangled({(0, 1): [n], (1, 2): [n], (2, 3): [n], (1, 3): [n], (3, 4): [n]})
+assert alone == {(0, 1): {n}, (1, 3): {n}, (3, 4): {n}}, alone
+both = untangled({(0, 1): [n, b], (1, 2): [n, b], (2, 3): [n, b], (1, 3): [n], (3, 4): [n, b]})
+assert both == {(0, 1): {n, b}, (1, 2): {n, b}, (2, 3): {n, b}, (3, 4): {n, b}}, both
 PY
 "$tool" render -q --style transit --center 0.01,0 --zoom 14 --size 256x256 -o lines.png
 "$tool" render -q --style transit --theme dark --center 0.01,0 --zoom 14 --size 256x256 -o dark.png

@@ -321,6 +321,31 @@ static void test_max_angle(void **state) {
     }
 }
 
+/* Where a line turns at one point, the glyphs turn step by step: if two neighbours took the whole turn, they would
+ * overlap. */
+static void test_kink(void **state) {
+    (void)state;
+    const double turn = 36.0 * acos(-1.0) / 180.0;
+    town *t = open_town(NAMES("names", "\"symbol-placement\":\"line-center\",\"text-size\":20"));
+    const double px[] = {512.0 - 300.0 * cos(turn), 512.0 - 300.0 * sin(turn), 512.0, 512.0, 812.0, 512.0};
+    add_feature(t, CAMBER_GEOMETRY_LABEL_LINE, "Corner Avenue", px, 3);
+    camber_labels labels = place(t);
+    assert_int_equal(labels.label_count, 1);
+    double least = turn, last = 0.0;
+    for (size_t i = 0; i < labels.item_count; i++) {
+        const double angle = atan2((double)labels.items[i].yx, (double)labels.items[i].xx);
+        assert_true(angle > -0.001 && angle < turn + 0.001);
+        if (i)
+            assert_true(last - angle < 0.7 * turn && last - angle > -0.001);
+        least = fmin(least, angle);
+        last = angle;
+    }
+    assert_near(atan2((double)labels.items[0].yx, (double)labels.items[0].xx), turn, 0.001);
+    assert_near(least, 0.0, 0.001);
+    camber_labels_free(&labels);
+    close_town(t);
+}
+
 #define REPEATED(id, layout, px)                                                                                       \
     "{\"id\":\"" id "\",\"type\":\"symbol\",\"metadata\":{\"camber:repeat\":" #px "},\"layout\":{\"text-field\":["     \
     "\"get\",\"name\"]," layout "}}"
@@ -798,6 +823,7 @@ int main(void) {
         cmocka_unit_test(test_area),
         cmocka_unit_test(test_line),
         cmocka_unit_test(test_max_angle),
+        cmocka_unit_test(test_kink),
         cmocka_unit_test(test_line_spacing),
         cmocka_unit_test(test_repeat),
         cmocka_unit_test(test_line_does_not_depend_on_view),

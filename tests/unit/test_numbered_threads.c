@@ -142,9 +142,38 @@ static void test_quota(void **state) {
     folder_remove(root);
 }
 
+/* The same of version 1, where each controller has groups of its own. */
+static void test_quota_of_version_1(void **state) {
+    (void)state;
+    static const struct {
+        const char *groups, *quota;
+        size_t paid;
+    } cases[] = {{"5:cpuset:/\n4:cpuacct,cpu:/app/worker\n0::/\n", "150000\n", 2},
+                 {"1:cpu:/app/worker\n", "-1\n", SIZE_MAX},
+                 {"1:cpu:/app/worker\n", "0\n", SIZE_MAX},
+                 {"1:cpu:/app/worker\n", "no number\n", SIZE_MAX},
+                 {"1:cpu:/app/other\n", "150000\n", SIZE_MAX},
+                 {"1:cpuset,cpuacct:/app/worker\n2:name=cpu:/app/worker\n", "150000\n", SIZE_MAX},
+                 {"cpu:/app/worker\n1:cpu\n\n", "150000\n", SIZE_MAX}};
+    char root[64];
+    folder_make(root);
+    write_in(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_period_us", "100000\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        write_in(root, "proc/self/cgroup", cases[i].groups);
+        write_in(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_quota_us", cases[i].quota);
+        assert_int_equal(camber_cores_paid(root), cases[i].paid);
+    }
+    /* A container sees its group as the first, but the path of the host. */
+    write_in(root, "proc/self/cgroup", "3:cpu,cpuacct:/docker/0123\n");
+    write_in(root, "sys/fs/cgroup/cpu/cpu.cfs_quota_us", "250000\n");
+    write_in(root, "sys/fs/cgroup/cpu/cpu.cfs_period_us", "50000\n");
+    assert_int_equal(camber_cores_paid(root), 5);
+    folder_remove(root);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_run), cmocka_unit_test(test_start),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_run),   cmocka_unit_test(test_start),
                                        cmocka_unit_test(test_count), cmocka_unit_test(test_affinity),
-                                       cmocka_unit_test(test_quota)};
+                                       cmocka_unit_test(test_quota), cmocka_unit_test(test_quota_of_version_1)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

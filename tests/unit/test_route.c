@@ -260,6 +260,16 @@ static void finds_maps(void **state) {
                 {"/page/page.css", 200, CAMBER_ROUTE_PAGE, CAMBER_ROUTE_NO_MAP, 0},
                 {"/a/page/page.css", 200, CAMBER_ROUTE_PAGE, 0, 9},
                 {"/a/static/auto/1x1.png", 200, CAMBER_ROUTE_STATIC, 0, 9},
+                {"/styles/a/static/auto/1x1@2x.png?path=1", 200, CAMBER_ROUTE_STATIC, 0, 9},
+                {"/styles/ab/static/1,2,3@4,5/1x1.jpg", 400, CAMBER_ROUTE_STATIC, 1, 9},
+                {"/styles/ab/static/1x1.png", 400, CAMBER_ROUTE_STATIC, 1, 9},
+                {"/styles/a/dark/1/0/1@2x.webp", 200, CAMBER_ROUTE_TILE, 2, 9},
+                {"/styles/ab/256/1/0/1.png", 200, CAMBER_ROUTE_TILE, 1, 9},
+                {"/styles/ab/512/1/0/1.png", 404, CAMBER_ROUTE_NONE, 1, 9},
+                {"/styles/a/health", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"/styles/abc/static/auto/1x1.png", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"/styles/", 404, CAMBER_ROUTE_NONE, 0, 9},
+                {"/styles/a", 404, CAMBER_ROUTE_NONE, 0, 9},
                 {"/abc/0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
                 {"/a0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
                 {"/A/0/0/0.png", 404, CAMBER_ROUTE_NONE, 0, 9},
@@ -277,6 +287,14 @@ static void finds_maps(void **state) {
             assert_int_equal(request.map, rows[i].rooted_map);
         }
     }
+    assert_int_equal(camber_route_parse(&two, "GET", "/styles/dark/0/0/0.png", &request), 200);
+    assert_int_equal(request.map, 1);
+    static const char *const styles[] = {"styles"}; /* this map's own paths have precedence */
+    assert_int_equal(
+        camber_route_parse(&(camber_route_limits){4, 2048, styles, 1}, "GET", "/styles/0/0/0.png", &request), 200);
+    assert_int_equal(camber_route_parse(&LIMITS, "GET", "/styles/a/0/0/0.png", &request), 404);
+    assert_int_equal(parse("/static/auto/1x1.jpeg", &request), 400);
+    assert_non_null(strstr(request.reason, "JPEG"));
     assert_int_equal(camber_route_parse(&two, "GET", "/dark/0/0/0.png", &request), 200);
     assert_true(request.map == 1 && !request.dark);
     assert_int_equal(camber_route_parse(&two, "GET", "/0/0/0.png", &request), 200);

@@ -47,10 +47,12 @@ CAMBER_FN camber_mask camber_edges_cross(const camber_ring_edges *e, float y) {
     return (e->y0 < y) & (e->y1 >= y);
 }
 
-/* Returns the x at which edges cross the horizontal line at y. */
-CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, float y) {
-    const camber_real x = e->x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
-    const camber_real least = CAMBER_LESS(e->x0, e->x1), most = CAMBER_MORE(e->x0, e->x1);
+/* Returns how far right of `left` edges cross the horizontal line at y. Only differences of positions are added up, so
+ * that the result is the same wherever in a picture they are. */
+CAMBER_FN camber_real camber_edges_crossing(const camber_ring_edges *e, camber_real left, float y) {
+    const camber_real x0 = e->x0 - left, x1 = e->x1 - left;
+    const camber_real x = x0 + (y - e->y0) * ((e->x1 - e->x0) / (e->y1 - e->y0));
+    const camber_real least = CAMBER_LESS(x0, x1), most = CAMBER_MORE(x0, x1);
     return x < least ? least : x > most ? most : x;
 }
 
@@ -71,10 +73,15 @@ CAMBER_FN int camber_crossing_times(camber_u32 place) {
     return (int)(place >> 16 ^ 0x8000u) - 0x8000;
 }
 
-/* Returns the first column of tiles whose corners are right of x. */
-CAMBER_FN int camber_column_after(float x, float left, int columns) {
-    const float at = (x - left) * (1.0f / CAMBER_TILE_PX);
-    return at >= 0.0f ? (at < (float)columns ? (int)at + 1 : columns) : 0; /* also for NaN */
+/* Returns the first column of tiles whose corners are right of where edges cross the horizontal line at y. left: of the
+ * first column. The nearest corner is compared as its own tile does. */
+CAMBER_FN camber_mask camber_columns_after(const camber_ring_edges *e, float left, float y, camber_u32 columns) {
+    const camber_real none = CAMBER_REAL(0.0f), past = CAMBER_REAL((float)columns);
+    const camber_real at = camber_edges_crossing(e, CAMBER_REAL(left), y) * (1.0f / CAMBER_TILE_PX) + 0.5f;
+    const camber_real above = at > none ? at : none; /* also for NaN */
+    const camber_mask near = CAMBER_TO_INTEGERS(above < past ? above : past);
+    const camber_real corner = left + (float)CAMBER_TILE_PX * CAMBER_TO_REAL(near);
+    return camber_edges_crossing(e, corner, y) < 0.0f ? near : near + 1;
 }
 
 /* Writes the crossings of one brush, and clears its turns. Returns how many crossings there are now. */
@@ -135,7 +142,7 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GL
         camber_listed_edges l;
         camber_take_listed(edges, list, at, edge_count, &l);
         const camber_mask cross = l.are_edges & camber_edges_cross(&l.edges, top);
-        const camber_real x = camber_edges_crossing(&l.edges, top);
+        const camber_mask after = camber_columns_after(&l.edges, of.left, top, of.columns);
         for (int k = 0; k < CAMBER_LANES; k++) {
             if (!camber_integer_of(&cross, k))
                 continue;
@@ -145,7 +152,7 @@ CAMBER_FN camber_u32 camber_wind_row(CAMBER_GLOBAL const float *edges, CAMBER_GL
                 last = -1;
                 brush = l.brushes[k];
             }
-            const int column = camber_column_after(camber_lane_of(&x, k), of.left, columns);
+            const int column = camber_integer_of(&after, k);
             if (column >= columns)
                 continue;
             turns[column] += (int)camber_lane_of(&l.edges.down, k);
@@ -259,7 +266,7 @@ CAMBER_FN void camber_tile_edges_of(const camber_ring_edges *ring, camber_mask w
     camber_ring_edges *e = &t->in;
     const camber_mask crosses = camber_edges_cross(ring, where.top);
     *e = *ring;
-    e->x0 = (crosses ? camber_edges_crossing(ring, where.top) : e->x0) - where.left;
+    e->x0 = crosses ? camber_edges_crossing(ring, CAMBER_REAL(where.left), where.top) : e->x0 - where.left;
     e->x1 = e->x1 - where.left;
     e->y0 = (crosses ? CAMBER_REAL(where.top) : e->y0) - where.top;
     e->y1 = e->y1 - where.top;

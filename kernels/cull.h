@@ -9,12 +9,16 @@
  * points are divided into chunks.
  *
  *     window  +-----------------------------+
- *             |   A1.....A2                 |      A1, A2, then an end that A2 writes
+ *             |   A1.....A2                 |      A1, A2, then an end at A3 that A2 writes
  *             |            \                |
- *             +-------------e---------------+
- *                            A3        A5          A3 writes nothing, A4 a beginning
- *             +--------------------b---/----+
- *                               A4-'               (pictured: two sides of one window) */
+ *             +-------------\---------------+
+ *                            A3        A5          A3 writes nothing, A4 a beginning at A4
+ *             +----------------------/------+
+ *                               A4--'              (pictured: two sides of one window)
+ *
+ * So that a line has the same bits in each window, its segments stay whole. Only long ones are halved until they are
+ * short enough for exact floats, in the network's steps, and so at the same points for every window. With a pitch the
+ * window does cut segments, because what is behind the camera has no place in the picture. */
 #ifndef CAMBER_KERNELS_CULL_H
 #define CAMBER_KERNELS_CULL_H
 
@@ -23,7 +27,10 @@
 /* Points that a work-item walks, and work-items in a group. */
 #define CAMBER_CULL_CHUNK 64
 #define CAMBER_WALKERS (CAMBER_BLOCK / 8)
-/* Points farther from the window than this are moved closer: floats are exact to 1/2048 px up to here. */
+/* Longer segments are halved. Floats are exact to 1/4096 px up to 4096 px: so far reaches a piece that touches a window
+ * of 2048 px and the margin around it. */
+#define CAMBER_PIECE_PX 1536.0f
+/* If segments are cut, points farther from the window than this are moved closer. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
 /* Whether a walk finds the arc length of each slot. The host's walk can do both. */
@@ -59,7 +66,7 @@ typedef struct camber_projection {
     float across_x, down_x, at_x;
     float across_y, down_y, at_y;
     float tolerance;                                  /* points of less importance are left out */
-    float window_x0, window_y0, window_x1, window_y1; /* px: all slots are inside it */
+    float window_x0, window_y0, window_x1, window_y1; /* px: segments that touch it get slots */
     camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes do not touch it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from first_point */
@@ -148,9 +155,59 @@ CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept_point a, cambe
 }
 #endif
 
+/* Whether two points in the window are on the same pixel; outside, where floats may be coarse, none count as such. */
 CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b) {
-    return a.x == b.x && a.y == b.y ? 1u : 0u;
+    return a.x == b.x && a.y == b.y && a.beyond == 0u ? 1u : 0u;
 }
+
+/* ---- Whole segments ---- */
+
+/* Whether segments are cut at the window. They are, too, if even a step is longer than a piece may be. */
+CAMBER_FN camber_u32 camber_cuts(const camber_projection *p) {
+    return p->slope > 0.0f || p->step_px > CAMBER_PIECE_PX ? 1u : 0u;
+}
+
+/* Returns how often a segment is halved. */
+CAMBER_FN camber_u32 camber_halvings(const camber_walk *w, const camber_projection *p, camber_kept_point a,
+                                     camber_kept_point b) {
+    const float dx = CAMBER_FABS((float)(w->x[b.point] - w->x[a.point])),
+                dy = CAMBER_FABS((float)(w->y[b.point] - w->y[a.point]));
+    float length = (dx > dy ? dx : dy) * p->step_px;
+    camber_u32 count = 0;
+    for (; length > CAMBER_PIECE_PX; count++)
+        length *= 0.5f;
+    return count;
+}
+
+/* Returns the i-th end of the pieces of a segment that is halved `count` times; from b to a they are the same. Those
+ * that are not a or b have no point. */
+CAMBER_FN camber_kept_point camber_piece_end(const camber_walk *w, const camber_projection *p, camber_kept_point a,
+                                             camber_kept_point b, camber_u32 count, camber_u32 i) {
+    if (i == 0u || i >> count)
+        return i ? b : a;
+    camber_u32 x0 = (camber_u32)w->x[a.point], y0 = (camber_u32)w->y[a.point];
+    camber_u32 x1 = (camber_u32)w->x[b.point], y1 = (camber_u32)w->y[b.point];
+    for (camber_u32 k = count; k-- > 0u;) {
+        const camber_u32 x = (x0 + x1) / 2u, y = (y0 + y1) / 2u, later = i >> k & 1u;
+        x0 = later ? x : x0;
+        y0 = later ? y : y0;
+        x1 = later ? x1 : x;
+        y1 = later ? y1 : y;
+    }
+    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, (camber_i32)x0, (camber_i32)y0);
+#if CAMBER_WALK_ARC_LENGTHS
+    at.along = w->lengths ? camber_along_at(w, a, b, (camber_i32)x0, (camber_i32)y0) : 0.0f;
+#endif
+    return at;
+}
+
+/* Returns the end of the first piece from a point towards another one; `to` itself if that is no point. */
+CAMBER_FN camber_kept_point camber_first_piece(const camber_walk *w, const camber_projection *p, camber_kept_point from,
+                                               camber_kept_point to) {
+    return to.point != CAMBER_NO_POINT ? camber_piece_end(w, p, from, to, camber_halvings(w, p, from, to), 1u) : to;
+}
+
+/* ---- Cut segments ---- */
 
 /* Returns the end a of a segment to b. If a is so far out that its pixel is coarse, it returns a nearer point of the
  * segment, outside the window. It is found by halving, and exact to a step of the network. If the segment stays far
@@ -263,6 +320,20 @@ CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_pro
 }
 #endif
 
+/* Returns the info of a slot that is neither a line's first nor its last. */
+CAMBER_FN camber_u32 camber_real_info(const camber_walk *w) {
+    return (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
+}
+
+CAMBER_FN void camber_put_kept(camber_walk *w, const camber_projection *p, camber_kept_point at, camber_u32 info) {
+    camber_put_slot(w, at.x, at.y, info);
+#if CAMBER_WALK_ARC_LENGTHS
+    camber_walk_put_arc_length(w, p, at.along);
+#else
+    CAMBER_UNUSED(p)
+#endif
+}
+
 /* Writes a slot for b, or for the point where the segment from a to b leaves the window. */
 CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b,
                               camber_u32 info) {
@@ -297,7 +368,7 @@ CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_
 }
 
 /* Writes the sentinel of a ring: before the first point the last different one, after the last point the second one. It
- * is cut like the segment that it represents, so that both ends of the ring have the same turn. */
+ * is halved or cut like the segment that it represents, so that both ends of the ring have the same turn. */
 CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection *p, camber_u32 before,
                                         camber_kept_point seam) {
     camber_kept_point other = seam;
@@ -308,7 +379,10 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
     } else {
         other = camber_find_next(w, p, w->first, seam);
     }
-    camber_put_cut(w, p, seam, camber_pull(w, p, other, seam), 0u);
+    if (camber_cuts(p))
+        camber_put_cut(w, p, seam, camber_pull(w, p, other, seam), 0u);
+    else
+        camber_put_kept(w, p, camber_first_piece(w, p, seam, other), 0u);
 }
 
 /* ---- Areas ---- */
@@ -334,14 +408,15 @@ CAMBER_FN void camber_put_left_slot(camber_walk *w, const camber_projection *p, 
 #endif
 }
 
-/* Left of the window a polygon's segment still changes the winding number of points in the window. That part is written
- * as a line along the window's left side, from where the segment crosses it to the height of the segment's end:
+/* Left of the window a polygon's segment still changes the winding number of points in the window. It is written as a
+ * line along the window's left side, as high as its ends. Of a segment that is cut, the part left of the window is
+ * written so, from where the segment crosses that side to the height of the segment's end:
  *
  *     A1----------+---A2           A1'---+
  *      \          | window          |    |     A1' is on the left side, as high as A1. Points of the ring left of
  *       A0        |                 A0'  |     the window change nothing else in it. */
 CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
+    const camber_u32 real = camber_real_info(w);
     float from = a.y, to = b.y;
     if (!(a.beyond & b.beyond & 1u)) {
         const camber_kept_point near_a = camber_pull(w, p, a, b), near_b = camber_pull(w, p, b, a);
@@ -360,29 +435,102 @@ CAMBER_FN void camber_put_left(camber_walk *w, const camber_projection *p, cambe
 
 /* ---- Points ---- */
 
-/* Writes the slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point.
- */
-CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
-    const camber_u32 real = (w->word & (CAMBER_ROW_BITS | CAMBER_STRETCH_AREA)) | CAMBER_POINT_REAL;
-    const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
-    if (!a.beyond) {
-        const camber_u32 begins = a.point == w->first ? 1u : 0u;
-        const camber_u32 seam = (w->word & CAMBER_STRETCH_RING) && begins == has_next ? CAMBER_POINT_RING : 0u;
-        if (seam && begins)
-            camber_walk_put_sentinel(w, p, 1u, a);
-        camber_put_slot(w, a.x, a.y,
-                        real | (begins ? CAMBER_POINT_FIRST : 0u) | (has_next ? 0u : CAMBER_POINT_LAST) | seam);
-#if CAMBER_WALK_ARC_LENGTHS
-        camber_walk_put_arc_length(w, p, a.along);
-#endif
-        if (seam && !begins)
-            camber_walk_put_sentinel(w, p, 0u, a);
+/* The piece of a segment from a to b that begins at the given end. */
+typedef struct camber_segment_piece {
+    camber_kept_point a, b, from, to;
+    camber_u32 halvings, at, end;
+} camber_segment_piece;
+
+/* Writes the point at which a line comes into the window. So that the joins at both ends of the piece are those of the
+ * whole line, the point before it is written, too, unless the line begins here. If the piece before touches the window
+ * as well, it has written this point; but a ring's seam divides the two. Areas have no joins. */
+CAMBER_FN void camber_put_beginning(camber_walk *w, const camber_projection *p, const camber_segment_piece *piece) {
+    const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
+    const camber_u32 is_first = piece->at == 0u && piece->a.point == w->first;
+    if (w->word & CAMBER_STRETCH_AREA) {
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT);
+        return;
     }
+    if (is_first && !is_ring) {
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST);
+        return;
+    }
+    const camber_kept_point before =
+        piece->at > 0u
+            ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at - 1u)
+            : camber_first_piece(w, p, piece->a, camber_find_before(w, p, is_first ? w->end - 1u : piece->a.point));
+    if (before.beyond & piece->from.beyond) {
+        camber_put_kept(w, p, before,
+                        real | CAMBER_POINT_FIRST | (before.point != w->first || is_ring ? CAMBER_POINT_CUT : 0u));
+        camber_put_kept(w, p, piece->from, real);
+    } else if (is_first) {
+        camber_put_kept(w, p, before, 0u);
+        camber_put_kept(w, p, piece->from, real | CAMBER_POINT_FIRST | CAMBER_POINT_RING);
+    }
+}
+
+/* Writes the point at which a line leaves the window, and in the same way the point after it. */
+CAMBER_FN void camber_put_end(camber_walk *w, const camber_projection *p, const camber_segment_piece *piece) {
+    const camber_u32 real = camber_real_info(w), is_ring = w->word & CAMBER_STRETCH_RING;
+    const camber_u32 is_last = piece->at + 1u == piece->end && piece->b.point + 1u == w->end;
+    if (w->word & CAMBER_STRETCH_AREA) {
+        camber_put_kept(w, p, piece->to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
+        return;
+    }
+    if (is_last && !is_ring) {
+        camber_put_kept(w, p, piece->to, real | CAMBER_POINT_LAST);
+        return;
+    }
+    const camber_kept_point after =
+        piece->at + 1u < piece->end
+            ? camber_piece_end(w, p, piece->a, piece->b, piece->halvings, piece->at + 2u)
+            : camber_first_piece(w, p, piece->b,
+                                 camber_find_next(w, p, (is_last ? w->first : piece->b.point) + 1u, piece->b));
+    const camber_u32 is_end = after.beyond & piece->to.beyond, is_seam = !is_end && is_last;
+    camber_put_kept(w, p, piece->to, real | (is_seam ? CAMBER_POINT_LAST | CAMBER_POINT_RING : 0u));
+    if (is_end)
+        camber_put_kept(w, p, after,
+                        real | CAMBER_POINT_LAST | (after.point + 1u != w->end || is_ring ? CAMBER_POINT_CUT : 0u));
+    else if (is_seam)
+        camber_put_kept(w, p, after, 0u);
+}
+
+/* Writes the pieces of a segment that touch the window. Where several in a row do not, they are passed at once. */
+CAMBER_FN void camber_put_pieces(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
+    camber_segment_piece piece = {a, b, a, b, 0, 0, 1};
+    if (!(a.beyond & b.beyond))
+        piece.halvings = camber_halvings(w, p, a, b);
+    piece.end = 1u << piece.halvings;
+    for (camber_u32 more = piece.end; piece.at < piece.end;) {
+        piece.to = camber_piece_end(w, p, a, b, piece.halvings, piece.at + more);
+        const camber_u32 outside = piece.from.beyond & piece.to.beyond;
+        if (more > 1u && !outside) {
+            more /= 2u;
+            continue;
+        }
+        if (outside == 1u && (w->word & CAMBER_STRETCH_AREA))
+            camber_put_left(w, p, piece.from, piece.to);
+        if (!outside && piece.from.beyond)
+            camber_put_beginning(w, p, &piece);
+        if (!outside && piece.to.beyond)
+            camber_put_end(w, p, &piece);
+        else if (!outside && piece.at + 1u < piece.end)
+            camber_put_kept(w, p, piece.to, camber_real_info(w));
+        piece.from = piece.to;
+        piece.at += more;
+        more = piece.at & (0u - piece.at);
+    }
+}
+
+/* Writes what the window has of a segment, cut at its sides. */
+CAMBER_FN void camber_put_cut_segment(camber_walk *w, const camber_projection *p, camber_kept_point a,
+                                      camber_kept_point b) {
+    const camber_u32 real = camber_real_info(w);
     const camber_u32 is_left =
-        (w->word & CAMBER_STRETCH_AREA) && has_next && ((a.beyond | b.beyond) & 1u) && !(a.beyond & b.beyond & 12u);
+        (w->word & CAMBER_STRETCH_AREA) && ((a.beyond | b.beyond) & 1u) && !(a.beyond & b.beyond & 12u);
     if (is_left && a.beyond)
         camber_put_left(w, p, a, b);
-    if (!has_next || (a.beyond & b.beyond) || !(a.beyond | b.beyond))
+    if ((a.beyond & b.beyond) || !(a.beyond | b.beyond))
         return;
     const camber_kept_point from = camber_pull(w, p, a, b), to = camber_pull(w, p, b, a);
     if (from.beyond && to.beyond &&
@@ -394,6 +542,26 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST | CAMBER_POINT_CUT);
     if (is_left && !a.beyond)
         camber_put_left(w, p, a, b);
+}
+
+/* Writes the slots that belong to a point: its own, a ring's sentinel, and those of the segment to the next point. */
+CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
+    const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
+    if (!a.beyond) {
+        const camber_u32 begins = a.point == w->first ? 1u : 0u;
+        const camber_u32 seam = (w->word & CAMBER_STRETCH_RING) && begins == has_next ? CAMBER_POINT_RING : 0u;
+        if (seam && begins)
+            camber_walk_put_sentinel(w, p, 1u, a);
+        camber_put_kept(w, p, a,
+                        camber_real_info(w) | (begins ? CAMBER_POINT_FIRST : 0u) | (has_next ? 0u : CAMBER_POINT_LAST) |
+                            seam);
+        if (seam && !begins)
+            camber_walk_put_sentinel(w, p, 0u, a);
+    }
+    if (has_next && camber_cuts(p))
+        camber_put_cut_segment(w, p, a, b);
+    else if (has_next)
+        camber_put_pieces(w, p, a, b);
 }
 
 /* Walks the points [begin, end) of the stretch, at most CAMBER_CULL_CHUNK. Of neighbours on the same pixel only the

@@ -133,12 +133,19 @@ CAMBER_FN camber_offset_segment camber_offset_segment_at(const camber_source_lin
     return segment;
 }
 
+/* Rounds how far a point is from one of the source line to 1/4096 px, the step of points of tiles. So the point has the
+ * same bits wherever in a picture it is. */
+CAMBER_FN float camber_offset_round(float px) {
+    const camber_u32 far = px > 65536.0f || px < -65536.0f ? 1u : 0u;
+    return far ? px : (float)(camber_i32)(px * 4096.0f + (px < 0.0f ? -0.5f : 0.5f)) * (1.0f / 4096.0f);
+}
+
 CAMBER_FN float camber_offset_segment_x(const camber_offset_segment *segment, float offset, float along) {
-    return segment->x + segment->ux * along - segment->uy * offset;
+    return segment->x + camber_offset_round(segment->ux * along - segment->uy * offset);
 }
 
 CAMBER_FN float camber_offset_segment_y(const camber_offset_segment *segment, float offset, float along) {
-    return segment->y + segment->uy * along + segment->ux * offset;
+    return segment->y + camber_offset_round(segment->uy * along + segment->ux * offset);
 }
 
 CAMBER_FN camber_u32 camber_offset_has_segment(camber_offset_clip clip) {

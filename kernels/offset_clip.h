@@ -46,8 +46,8 @@ CAMBER_FN camber_u32 camber_neighbour_walk_on(const camber_source_line *c, cambe
     const float root = qb * qb - qa * qc;
     const float part = (CAMBER_SQRT(root > 0.0f ? root : 0.0f) - qb) / qa;
     const float t = part > 0.0f ? (part < 1.0f ? part : 1.0f) : 0.0f;
-    p->bx = p->ax + ex * t;
-    p->by = p->ay + ey * t;
+    p->bx = p->ax + camber_offset_round(ex * t);
+    p->by = p->ay + camber_offset_round(ey * t);
     p->left = 0u;
     return 1u;
 }
@@ -162,7 +162,7 @@ CAMBER_FN void camber_offset_arc_cut(const camber_source_line *c, camber_u32 slo
         const float ex = way->bx - way->ax, ey = way->by - way->ay, length2 = ex * ex + ey * ey;
         camber_offset_arc at = *arc;
         for (camber_u32 i = 0; i < arc->count; i++) {
-            const float px = corner->x + at.vx - way->ax, py = corner->y + at.vy - way->ay;
+            const float px = corner->x - way->ax + at.vx, py = corner->y - way->ay + at.vy;
             const float along = px * ex + py * ey;
             const float t = along <= 0.0f || length2 <= 0.0f ? 0.0f : along >= length2 ? 1.0f : along / length2;
             const float qx = px - ex * t, qy = py - ey * t;

@@ -125,8 +125,8 @@ CAMBER_FN camber_offset_point camber_offset_element_end(const camber_source_line
     camber_offset_arc arc = camber_offset_arc_of(&corner, row);
     for (camber_u32 i = 1; i < camber_offset_arc_end(clip.arc); i++)
         camber_offset_arc_step(&arc);
-    place.x = corner.x + arc.vx;
-    place.y = corner.y + arc.vy;
+    place.x = corner.x + camber_offset_round(arc.vx);
+    place.y = corner.y + camber_offset_round(arc.vy);
     place.along = camber_offset_along_slot(c, element.slot);
     return place;
 }
@@ -152,7 +152,7 @@ CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset
         before.kind == CAMBER_OFFSET_SEGMENT && before.steps == 1u && camber_offset_arc_first(clip.arc) == 0u;
     const camber_u32 goes_on = joins && c->clips[before.slot].to >= CAMBER_OFFSET_SEGMENT_WHOLE ? 1u : 0u;
     for (camber_u32 i = 0; i < camber_offset_arc_end(clip.arc); i++) {
-        const float x = corner.x + arc.vx, y = corner.y + arc.vy;
+        const float x = corner.x + camber_offset_round(arc.vx), y = corner.y + camber_offset_round(arc.vy);
         if (i == camber_offset_arc_first(clip.arc) && before.kind != CAMBER_OFFSET_NONE && !goes_on) {
             const camber_offset_point end = camber_offset_element_end(c, before, row);
             if (!camber_is_close(end, x, y))
@@ -187,8 +187,9 @@ CAMBER_FN void camber_offset_emit_crossing(const camber_source_line *c, camber_o
         if (corner.inner && room <= CAMBER_OFFSET_REACH * d &&
             camber_crossing_holds(other.length - room, room, a, other.length, b, segment->length)) {
             const float nx = -corner.iy * offset / corner.c, ny = corner.ix * offset / corner.c;
-            camber_offset_writer_point(writer, corner.x + (nx * corner.c - ny * corner.s),
-                                       corner.y + (nx * corner.s + ny * corner.c), camber_offset_along_slot(c, slot));
+            camber_offset_writer_point(writer, corner.x + camber_offset_round(nx * corner.c - ny * corner.s),
+                                       corner.y + camber_offset_round(nx * corner.s + ny * corner.c),
+                                       camber_offset_along_slot(c, slot));
             return;
         }
     }

@@ -143,7 +143,7 @@ typedef struct camber_source_desc {
      * of them meet end to end. Lines of opposite direction are merged too, unless the style uses line-dasharray,
      * line-offset, line-gradient or line-pattern. */
     bool keep_apart;
-    uint32_t threads; /* that read an OpenStreetMap PBF; 0: one per core */
+    uint32_t threads; /* that read an OpenStreetMap PBF, and weigh the points of any file; 0: one per core */
 } camber_source_desc;
 
 typedef struct camber_features_stats {

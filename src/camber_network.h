@@ -101,10 +101,10 @@ typedef struct camber_camera {
 } camber_camera;
 
 /* Tessellates the lines of a network that the camera sees, and replaces the mesh's earlier content. The device projects
- * the lines, simplifies, cuts and compacts them; the host learns only the sizes. Polylines are cut where they leave a
- * window around the picture. The window is larger than any stroke reaches, by at least 64 px, so that no caps show and
- * no vertices are far away. The mesh keeps the network on the device: another call uploads nothing. The same camera
- * gives the same bytes.
+ * the lines, simplifies and compacts them; the host learns only the sizes. Polylines end where they leave a window
+ * around the picture, which is larger than any stroke reaches, by at least 64 px, so that no caps show. They end with
+ * whole segments; only those longer than 1,536 px are divided, so no vertices are far away. With a pitch they are cut.
+ * The mesh keeps the network on the device: another call uploads nothing. The same camera gives the same bytes.
  * Returns the errors of camber_mesh_tessellate, and CAMBER_ERROR_ARGUMENT (a camera that is not finite, a scale or a
  * size of 0, a size above 65535, a scale at which a step is more than 10^9 px, or a tolerance above 0 for a network
  * without importance).

@@ -139,9 +139,10 @@ typedef struct camber_tiles_engine_desc {
 } camber_tiles_engine_desc;
 
 /* An engine draws tiles of features. One picture shows a metatile: up to 8 x 8 tiles. Metatiles are arranged in a grid
- * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across the edges of metatiles
- * to within one level of 255, whatever their width, offset, blur, dashes or pattern. The output of an engine depends
- * only on its desc and on the features.
+ * from the north-west. The tiles of a metatile are cut out of one picture. Lines continue across the edges of
+ * metatiles, whatever their width, offset, blur, dashes or pattern. The output of an engine depends only on its desc
+ * and on the features. If kernels draw, and tiles are a multiple of 32 px wide, on_demand_side changes no byte of a
+ * tile, except in areas that an image fills: there by one level of 255.
  *
  * If fonts were read with the features (camber_features_read_fonts), pictures have labels. These have fixed places in
  * each zoom: a label that touches several tiles is the same in all of them, whichever are drawn, in any order, at any

@@ -20,6 +20,7 @@ int camber_verb_serve(camber_session *session) {
 #elif defined(CAMBER_MAP)
 
 #include "base/base.h"
+#include "base/threads.h"
 #include "base/whole_file.h"
 #include "serve/address.h"
 #include "serve/server.h"
@@ -76,6 +77,7 @@ struct reading {
     camber_report report;
     camber_input input;
     camber_style *dark;
+    int dark_status;
     camber_tiles_reader *reader;
     json_t *about; /* an archive's metadata */
     camber_server_content content;
@@ -241,12 +243,27 @@ static void tell_nothing(const reading *it) {
         camber_report_warn(it->session->report, "nothing is drawn: %s", why);
 }
 
+/* Reads the dark theme beside the map: nothing but pictures needs it. */
+static void read_dark(void *user, size_t number) {
+    reading *it = user;
+    const char *base_path;
+    (void)number;
+    it->dark_status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
+}
+
 static int read_map(reading *it) {
     const camber_options *options = it->session->options;
-    const char *base_path;
+    camber_threads beside = {.count = 0};
+    const bool themed = !options->style && options->theme < 0;
+    if (themed)
+        camber_threads_start(&beside, 1, read_dark, it);
+    const bool started = beside.count > 0;
     int status = camber_input_open(&it->input, it->session);
-    if (status == CAMBER_EXIT_DONE && !options->style && options->theme < 0)
-        status = camber_input_make_style(it->session, CAMBER_THEME_DARK, &it->dark, &base_path);
+    camber_threads_join(&beside);
+    if (themed && !started)
+        read_dark(it, 0);
+    if (status == CAMBER_EXIT_DONE)
+        status = it->dark_status;
     if (status != CAMBER_EXIT_DONE)
         return status;
     it->content.source = (camber_map_source){.features = it->input.features,

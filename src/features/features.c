@@ -6,7 +6,8 @@
 #include "features/features.h"
 #include "features/mercator.h"
 
-#include "camber_network.h"
+#include "base/threads.h"
+#include "lines/importance.h"
 
 #include <limits.h>
 #include <math.h>
@@ -714,12 +715,13 @@ camber_status camber_features_set_importance(camber_features *features, size_t f
                      sizeof *features->importance))
         return CAMBER_ERROR_MEMORY;
     const size_t labels = camber_features_find_labels(features, first_polyline), end = features->polyline_count;
-    camber_status status = CAMBER_OK;
-    if (labels > first_polyline)
-        status = camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
-                                         labels - first_polyline, features->importance);
-    if (status == CAMBER_OK && end > labels)
-        status = camber_importance_weigh(features->context, features->points, features->offsets + labels, end - labels,
-                                         features->importance);
-    return status;
+    camber_importance_desc desc = {.points = features->points,
+                                   .offsets = features->offsets + first_polyline,
+                                   .polyline_count = labels - first_polyline,
+                                   .importance = features->importance,
+                                   .threads = camber_threads_count(features->threads)};
+    camber_status status = camber_importance_weigh_by(features->context, &desc);
+    desc.offsets = features->offsets + labels;
+    desc.polyline_count = end - labels;
+    return status == CAMBER_OK ? camber_importance_weigh_by(features->context, &desc) : status;
 }

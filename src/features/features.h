@@ -29,6 +29,7 @@ struct camber_features {
     const camber_style *style;   /* the style that draws the features; readers know only its schema */
     /* How often files were read, something was removed or replaced, or the style changed (camber_features_key). */
     uint64_t changes;
+    unsigned threads; /* the most that work on a file after it was read, as in camber_source_desc */
 
     /* Web Mercator world coordinates: pairs x, y from 0 to 1; the origin is the north-west corner, y grows southwards.
      */

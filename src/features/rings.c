@@ -5,6 +5,8 @@
  * themselves or have spikes, and holes outside their area, are only counted and stay as they are. */
 #include "features/rings.h"
 
+#include "base/threads.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -215,26 +217,79 @@ static bool is_outside(area_rings *area, size_t hole) {
 
 /* ---- The count ---- */
 
-static void count_ring(camber_features_stats *stats, area_rings *area, size_t polyline) {
+/* The most threads that count, and how many points make a second one worthwhile. */
+enum { MOST_COUNTERS = 8, FEW_POINTS = 1 << 15 };
+
+typedef struct odd_rings {
+    size_t crossing, spiked, outside;
+} odd_rings;
+
+typedef struct ring_count {
+    const camber_features *features;
+    size_t first, end; /* polylines */
+    size_t thread_count;
+    odd_rings odd[MOST_COUNTERS];
+} ring_count;
+
+static void count_ring(odd_rings *odd, area_rings *area, size_t polyline) {
     const double *points;
     const size_t count = ring_of(area->features, polyline, &points);
-    stats->crossing_rings += camber_ring_crosses(points, count);
-    stats->spiked_rings += camber_ring_has_spike(points, count);
-    stats->outside_holes += camber_ring_area(points, count) < 0.0 && is_outside(area, polyline);
+    odd->crossing += camber_ring_crosses(points, count);
+    odd->spiked += camber_ring_has_spike(points, count);
+    odd->outside += camber_ring_area(points, count) < 0.0 && is_outside(area, polyline);
+}
+
+/* Returns the first polyline of a thread's part. Parts have about as many points, and whole features. */
+static size_t part_begin(const ring_count *c, size_t number) {
+    const camber_features *f = c->features;
+    const size_t first = f->offsets[c->first], points = f->offsets[c->end] - first;
+    size_t low = c->first, high = c->end;
+    if (number == 0 || number == c->thread_count)
+        return number ? c->end : c->first;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (f->offsets[middle] - first < points / c->thread_count * number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    while (low > c->first && low < c->end && f->polyline_feature[low] == f->polyline_feature[low - 1])
+        low++;
+    return low;
+}
+
+static void count_part(void *user, size_t number) {
+    ring_count *c = user;
+    const camber_features *f = c->features;
+    const size_t part_end = part_begin(c, number + 1);
+    size_t end = part_begin(c, number);
+    odd_rings odd = {0};
+    for (size_t first = end; first < part_end; first = end) {
+        const uint32_t feature = f->polyline_feature[first];
+        while (end < part_end && f->polyline_feature[end] == feature)
+            end++;
+        if (f->classes[f->feature_class[feature]].geometry != CAMBER_GEOMETRY_AREA)
+            continue;
+        area_rings area = {f, first, end, LOOKS_AN_EDGE * (f->offsets[end] - f->offsets[first])};
+        for (size_t i = first; i < end; i++)
+            count_ring(&odd, &area, i);
+    }
+    c->odd[number] = odd;
 }
 
 /* Counts defects of rings. The rings stay as they are. */
 static void count_odd(camber_features *features, size_t first_polyline) {
-    size_t end = first_polyline;
-    for (size_t first = first_polyline; first < features->polyline_count; first = end) {
-        const uint32_t feature = features->polyline_feature[first];
-        while (end < features->polyline_count && features->polyline_feature[end] == feature)
-            end++;
-        if (features->classes[features->feature_class[feature]].geometry != CAMBER_GEOMETRY_AREA)
-            continue;
-        area_rings area = {features, first, end, LOOKS_AN_EDGE * (features->offsets[end] - features->offsets[first])};
-        for (size_t i = first; i < end; i++)
-            count_ring(&features->stats, &area, i);
+    ring_count c = {.features = features, .first = first_polyline, .end = features->polyline_count, .thread_count = 1};
+    if (c.first == c.end)
+        return;
+    if (features->offsets[c.end] - features->offsets[c.first] >= FEW_POINTS)
+        c.thread_count = camber_threads_count(features->threads);
+    c.thread_count = c.thread_count < MOST_COUNTERS ? c.thread_count : MOST_COUNTERS;
+    camber_threads_run(c.thread_count, count_part, &c);
+    for (size_t i = 0; i < c.thread_count; i++) {
+        features->stats.crossing_rings += c.odd[i].crossing;
+        features->stats.spiked_rings += c.odd[i].spiked;
+        features->stats.outside_holes += c.odd[i].outside;
     }
 }
 

@@ -42,6 +42,7 @@ static camber_status read_file(camber_features *features, const camber_source_de
 
 camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
     struct stat about;
+    features->threads = desc->threads;
     const camber_status status = read_file(features, desc);
     if (status == CAMBER_OK && stat(desc->path, &about) == 0 && S_ISREG(about.st_mode))
         features->stats.input_bytes += (size_t)about.st_size;

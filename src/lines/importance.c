@@ -3,8 +3,11 @@
  * Each polyline is treated separately, by the Douglas-Peucker method: a range of points is split at the point that is
  * farthest from the segment between its ends. That point's importance is its distance, but at most the importance of
  * the point that split the surrounding range, so that no point is kept if one that it depends on is dropped. Values are
- * rounded up. Then points with equal coordinates get the largest importance among them. */
-#include "base/base.h"
+ * rounded up. Then points with equal coordinates get the largest importance among them. Threads first divide the
+ * polylines among themselves, and then the coordinates, by their hashes. */
+#include "lines/importance.h"
+
+#include "base/threads.h"
 #include "lines/farthest.h"
 
 #include "camber_network.h"
@@ -135,9 +138,14 @@ static bool grow_table(camber_context *context, node_table *table, const double 
     return true;
 }
 
-/* Whether a hash belongs to the share. The number of shares is a power of two. The table itself uses the low bits. */
-static bool is_of_share(uint64_t hash, size_t share, size_t share_count) {
-    return ((size_t)(hash >> 40) & (share_count - 1)) == share;
+/* One of several parts of all hashes. Their number is a power of two. */
+typedef struct node_share {
+    size_t number, count;
+} node_share;
+
+/* Whether a hash belongs to the share. The table itself uses the low bits. */
+static bool is_of_share(uint64_t hash, node_share share) {
+    return ((size_t)(hash >> 40) & (share.count - 1)) == share.number;
 }
 
 /* Points of a share that are looked up together: their slots are scattered over the table, so that memory can fetch
@@ -180,8 +188,8 @@ static camber_status look_up(camber_context *context, const double *points, node
     return CAMBER_OK;
 }
 
-static camber_status share_some(camber_context *context, const double *points, size_t count, size_t share,
-                                size_t share_count, node_table *table, float *importance) {
+static camber_status share_some(camber_context *context, const double *points, size_t count, node_share share,
+                                node_table *table, float *importance) {
     node_batch batch = {.count = 0};
     camber_status status = CAMBER_OK;
     table->repeat_count = table->used = 0;
@@ -190,7 +198,7 @@ static camber_status share_some(camber_context *context, const double *points, s
         const uint64_t hash = camber_mix_point(0, points + 2 * i);
         batch.points[batch.count] = (uint32_t)i;
         batch.hashes[batch.count] = hash;
-        batch.count += is_of_share(hash, share, share_count);
+        batch.count += is_of_share(hash, share);
         if (batch.count == BATCH)
             status = look_up(context, points, &batch, table, importance);
     }
@@ -201,38 +209,98 @@ static camber_status share_some(camber_context *context, const double *points, s
     return status;
 }
 
-/* Gives all points of a node the largest importance among them. */
-static camber_status share_nodes(camber_context *context, const double *points, size_t count, float *importance) {
-    if (count >= (size_t)1 << 31)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points are more than the limit of 2^31; read fewer",
-                           count);
-    node_table table = {.slot_count = 4 * BATCH};
-    size_t share_count = 1;
-    while (table.slot_count < MOST_SLOTS && table.slot_count < 2 * count)
-        table.slot_count *= 2;
-    while (share_count * table.slot_count < 2 * count)
-        share_count *= 2;
-    if (!(table.slots = camber_alloc(context, table.slot_count, sizeof *table.slots)))
-        return CAMBER_ERROR_MEMORY;
+/* ---- Threads ---- */
+
+/* With fewer points, starting a thread takes longer than it saves. */
+static const size_t FEW_POINTS = (size_t)1 << 15;
+/* Each thread looks at all points to find those of its shares, so more threads save nothing. */
+enum { MOST_SHARERS = 4 };
+
+typedef struct weighing {
+    camber_context *context;
+    const camber_importance_desc *desc;
+    size_t thread_count, point_count;
+    size_t sharer_count, share_count, slot_count; /* of each share's table */
+    camber_status statuses[MOST_SHARERS];
+} weighing;
+
+/* Returns the first polyline that begins at a point or after it. */
+static size_t first_polyline_at(const camber_importance_desc *desc, size_t point) {
+    size_t low = 0, high = desc->polyline_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (desc->offsets[middle] < point)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Weighs the polylines that begin in a thread's part of the points. */
+static void weigh_part(void *user, size_t number) {
+    const weighing *w = user;
+    const camber_importance_desc *desc = w->desc;
+    const size_t first = desc->offsets[0], part = w->point_count / w->thread_count;
+    size_t i = number ? first_polyline_at(desc, first + number * part) : 0;
+    const size_t end =
+        number + 1 < w->thread_count ? first_polyline_at(desc, first + (number + 1) * part) : desc->polyline_count;
+    for (; i < end; i++)
+        weigh_polyline(desc->points, desc->offsets[i], desc->offsets[i + 1], desc->importance);
+}
+
+/* Gives all points of the nodes of a thread's shares the largest importance among them. */
+static void share_part(void *user, size_t number) {
+    weighing *w = user;
+    const size_t first = w->desc->offsets[0];
+    node_table table = {.slot_count = w->slot_count};
     camber_status status = CAMBER_OK;
-    for (size_t share = 0; share < share_count && status == CAMBER_OK; share++)
-        status = share_some(context, points, count, share, share_count, &table, importance);
-    camber_free(context, table.repeats);
-    camber_free(context, table.slots);
-    return status;
+    if (!(table.slots = camber_alloc(w->context, table.slot_count, sizeof *table.slots)))
+        status = CAMBER_ERROR_MEMORY;
+    for (size_t share = number; share < w->share_count && status == CAMBER_OK; share += w->sharer_count)
+        status = share_some(w->context, w->desc->points + 2 * first, w->point_count,
+                            (node_share){share, w->share_count}, &table, w->desc->importance + first);
+    camber_free(w->context, table.repeats);
+    camber_free(w->context, table.slots);
+    w->statuses[number] = status;
+}
+
+static camber_status share_nodes(weighing *w) {
+    const size_t count = w->point_count;
+    if (count >= (size_t)1 << 31)
+        return camber_fail(w->context, CAMBER_ERROR_LIMIT, "%zu points are more than the limit of 2^31; read fewer",
+                           count);
+    w->sharer_count = w->thread_count >= 4 ? 4 : w->thread_count >= 2 ? 2 : 1;
+    w->slot_count = 4 * BATCH;
+    w->share_count = w->sharer_count;
+    while (w->slot_count < MOST_SLOTS / w->sharer_count && w->share_count * w->slot_count < 2 * count)
+        w->slot_count *= 2;
+    while (w->share_count * w->slot_count < 2 * count)
+        w->share_count *= 2;
+    camber_threads_run(w->sharer_count, share_part, w);
+    for (size_t i = 0; i < w->sharer_count; i++)
+        if (w->statuses[i] != CAMBER_OK)
+            return w->statuses[i];
+    return CAMBER_OK;
+}
+
+camber_status camber_importance_weigh_by(camber_context *context, const camber_importance_desc *desc) {
+    if (desc->polyline_count == 0)
+        return CAMBER_OK;
+    for (size_t i = 0; i < desc->polyline_count; i++)
+        if (desc->offsets[i + 1] < desc->offsets[i])
+            return camber_fail(context, CAMBER_ERROR_INPUT,
+                               "importance: offset %zu is %zu, and the one before it is %zu; they must ascend", i + 1,
+                               desc->offsets[i + 1], desc->offsets[i]);
+    weighing w = {
+        .context = context, .desc = desc, .point_count = desc->offsets[desc->polyline_count] - desc->offsets[0]};
+    w.thread_count = w.point_count < FEW_POINTS ? 1 : desc->threads;
+    camber_threads_run(w.thread_count, weigh_part, &w);
+    return share_nodes(&w);
 }
 
 camber_status camber_importance_weigh(camber_context *context, const double *points, const size_t *offsets,
                                       size_t polyline_count, float *importance) {
-    if (polyline_count == 0)
-        return CAMBER_OK;
-    for (size_t i = 0; i < polyline_count; i++)
-        if (offsets[i + 1] < offsets[i])
-            return camber_fail(context, CAMBER_ERROR_INPUT,
-                               "importance: offset %zu is %zu, and the one before it is %zu; they must ascend", i + 1,
-                               offsets[i + 1], offsets[i]);
-    for (size_t i = 0; i < polyline_count; i++)
-        weigh_polyline(points, offsets[i], offsets[i + 1], importance);
-    const size_t first = offsets[0];
-    return share_nodes(context, points + 2 * first, offsets[polyline_count] - first, importance + first);
+    const camber_importance_desc desc = {points, offsets, polyline_count, importance, 1};
+    return camber_importance_weigh_by(context, &desc);
 }

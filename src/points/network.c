@@ -20,8 +20,8 @@
 static const double LEAST_EXTENT = 1e-30;
 /* Points farther out are invalid, so that no difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
-/* This many points keep slot numbers within 32 bits: a point may make its own slot, a ring's sentinel, and an end where
- * the window cuts. A point of an area may make two more; parts check their sums. */
+/* This many points keep slot numbers within 32 bits, if each makes two slots. Where lines enter and leave the window,
+ * and where long segments are halved, there may be more; parts check their sums. */
 static const size_t MOST_POINTS = INT32_MAX;
 /* A stretch that is a smaller fraction of its line says too little about the line's length. */
 static const double LEAST_PART = 1e-6;

@@ -6,7 +6,7 @@
  * exact enough for the rest.
  *
  *     seen     the box of steps that can reach the picture; stretches whose boxes do not touch it are skipped
- *     window   the picture and a margin, in px; segments are cut there
+ *     window   the picture and a margin, in px; segments that miss it are left out, or cut there if there is a pitch
  *
  *          +----------- window --------------+        without pitch, a rectangle
  *          |  margin                         |        with pitch, a trapezoid: far_y is its upper side

@@ -398,8 +398,18 @@ static enum MHD_Result answer_drawn(request *r) {
 
 /* ---- The other routes ---- */
 
+/* Compresses the files of the page, which takes longer than a first tile should wait for. */
+static void pack_page(camber_server *server) {
+    pthread_mutex_lock(&server->mutex);
+    for (size_t i = 0; i < camber_page_file_count && !server->page_is_packed; i++)
+        server->page_bodies[2 * i + 1] = camber_body_gzip(server->page_bodies[2 * i]);
+    server->page_is_packed = true;
+    pthread_mutex_unlock(&server->mutex);
+}
+
 static enum MHD_Result answer_page(request *r) {
-    const camber_server *server = r->listener->server;
+    camber_server *server = r->listener->server;
+    pack_page(server);
     for (size_t i = 0; i < camber_page_file_count; i++) {
         const camber_page_file *file = camber_page_files + i;
         if (strlen(file->path) != r->route.name_length || strncmp(file->path, r->route.name, r->route.name_length) != 0)

@@ -72,7 +72,8 @@ struct camber_server {
     _Atomic int64_t in_flight; /* requests that have been received and not yet answered */
     camber_body *errors[5];    /* texts of 400, 404, 405, 500 and 503 */
     camber_body **page_bodies; /* two per file: plain, then compressed or NULL */
-    pthread_mutex_t mutex;     /* guards the maps' views */
+    bool page_is_packed;   /* whether they have been compressed: when the page is first asked for. mutex guards it */
+    pthread_mutex_t mutex; /* guards the maps' views */
 };
 
 /* Callbacks of a daemon; user is its listener. */

@@ -191,7 +191,6 @@ static bool make_page(camber_server *server) {
         camber_body **bodies = server->page_bodies + 2 * i;
         if (!(bodies[0] = camber_body_create(camber_page_files[i].bytes, camber_page_files[i].size)))
             return false;
-        bodies[1] = camber_body_gzip(bodies[0]);
     }
     return true;
 }

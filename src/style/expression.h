@@ -52,6 +52,17 @@ typedef struct camber_match_label {
     uint32_t position; /* index in the document of its branch or stop */
 } camber_match_label;
 
+/* The most properties that a filter with a shortcut reads. */
+enum { CAMBER_SHORTCUT_PROPERTIES = 24 };
+
+/* The results of a filter for all features that have none of its properties, by type of geometry. Most features lack
+ * what most filters read, and looking for the properties is quicker than evaluating. */
+typedef struct camber_filter_shortcut {
+    bool exists;     /* false for filters that read something else, such as the zoom */
+    bool results[3]; /* points, lines, polygons */
+    uint16_t count, properties[CAMBER_SHORTCUT_PROPERTIES];
+} camber_filter_shortcut;
+
 struct camber_expression {
     camber_context *context;
     const json_t *document; /* the JSON that it was compiled from; documents keeps it alive */
@@ -68,6 +79,7 @@ struct camber_expression {
     uint32_t root;
     uint32_t slot_count;                                 /* the number of variables whose values an evaluation keeps */
     bool reads_zoom, reads_feature, reads_line_progress; /* all false: a constant */
+    camber_filter_shortcut shortcut;                     /* if it is a filter */
 };
 
 /* The most memory for an evaluation's texts and arrays, including its variables. */
@@ -100,6 +112,8 @@ void camber_evaluation_end(camber_evaluation *evaluation);
  * CAMBER_EVALUATION_ROOM bytes. */
 bool camber_expression_evaluate(const camber_expression *expression, camber_evaluation *evaluation,
                                 camber_value *value);
+/* Evaluates a filter; one that fails is false. */
+bool camber_filter_passes(const camber_expression *filter, double zoom, const camber_feature_view *feature);
 void camber_expression_destroy(camber_context *context, camber_expression *expression);
 
 #endif

@@ -188,12 +188,82 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
     return compile_comparison(c, json, op, node);
 }
 
+/* ---- Evaluating ---- */
+
+static bool evaluate(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+    camber_evaluation evaluation;
+    camber_evaluation_begin(&evaluation, zoom, feature);
+    camber_value value;
+    const bool matches =
+        camber_expression_evaluate(filter, &evaluation, &value) && value.type == CAMBER_VALUE_BOOL && value.boolean;
+    camber_evaluation_end(&evaluation);
+    return matches;
+}
+
+/* Whether a filter without zoom reads nothing of features but the type of geometry and some properties, which this
+ * lists. */
+static bool list_properties(const camber_expression *e, camber_filter_shortcut *shortcut) {
+    for (size_t i = 0; i < e->node_count; i++) {
+        const camber_node *node = e->nodes + i;
+        const bool property = node->evaluate == camber_evaluate_get || node->evaluate == camber_evaluate_has;
+        if (!property && node->reads_feature && node->count == 0 && node->evaluate != camber_evaluate_geometry_type)
+            return false;
+        uint16_t at = 0;
+        while (property && at < shortcut->count && shortcut->properties[at] != node->index)
+            at++;
+        if (!property || at < shortcut->count)
+            continue;
+        if (at == CAMBER_SHORTCUT_PROPERTIES)
+            return false;
+        shortcut->properties[shortcut->count++] = (uint16_t)node->index;
+    }
+    return true;
+}
+
+static bool find_shortcut(camber_compiler *c, camber_expression *filter) {
+    _Static_assert(CAMBER_PROPERTY_LIMIT <= UINT16_MAX, "a property's index has 16 bits");
+    static const char *const types[] = {"Point", "LineString", "Polygon"};
+    camber_filter_shortcut *shortcut = &filter->shortcut;
+    if (!filter->reads_feature || filter->reads_zoom || filter->reads_line_progress ||
+        c->style->schema.wants_all_properties || !list_properties(filter, shortcut))
+        return true;
+    camber_value *absent = camber_alloc_zero(c->context, c->style->schema.property_count, sizeof *absent);
+    if (!absent) { /* camber_alloc has logged it */
+        c->status = CAMBER_ERROR_MEMORY;
+        return false;
+    }
+    for (int i = 0; i < 3; i++)
+        shortcut->results[i] =
+            evaluate(filter, 0.0, &(camber_feature_view){.values = absent, .geometry_type = types[i]});
+    shortcut->exists = true;
+    camber_free(c->context, absent);
+    return true;
+}
+
+/* Whether a feature has none of a shortcut's properties. A null that a feature has counts as one. */
+static bool has_none(const camber_filter_shortcut *shortcut, const camber_feature_view *feature) {
+    for (uint16_t i = 0; i < shortcut->count; i++) {
+        const camber_value *value = feature->values + shortcut->properties[i];
+        if (value->type != CAMBER_VALUE_NULL || value->boolean)
+            return false;
+    }
+    return true;
+}
+
+bool camber_filter_passes(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+    const camber_filter_shortcut *shortcut = &filter->shortcut;
+    const char *type = feature ? feature->geometry_type : NULL;
+    if (!shortcut->exists || !type || !has_none(shortcut, feature))
+        return evaluate(filter, zoom, feature);
+    return shortcut->results[type[0] == 'L' ? 1 : type[2] == 'l' ? 2 : 0];
+}
+
 bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression **expression) {
     uint32_t root = 0;
     if (!camber_expression_begin(c, json))
         return false;
     const bool done = compile_filter(c, json, 0, &root);
-    return camber_expression_end(c, done, root, expression);
+    return camber_expression_end(c, done, root, expression) && find_shortcut(c, *expression);
 }
 
 /* ---- Types of geometry ---- */

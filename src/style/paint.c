@@ -6,15 +6,7 @@
 #include <math.h>
 
 static bool passes_filter(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
-    if (!filter)
-        return true;
-    camber_evaluation evaluation;
-    camber_evaluation_begin(&evaluation, zoom, feature);
-    camber_value value;
-    const bool matches =
-        camber_expression_evaluate(filter, &evaluation, &value) && value.type == CAMBER_VALUE_BOOL && value.boolean;
-    camber_evaluation_end(&evaluation);
-    return matches;
+    return !filter || camber_filter_passes(filter, zoom, feature);
 }
 
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {

@@ -4,6 +4,8 @@
 
 #include "validate/network_truth.h"
 
+#include "kernels/cull.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,7 +142,8 @@ static double reach_of(const job *j) {
 static camber_status check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
-    const double most = 64 + 16 + reach_of(j) + s->camera.translate_px;
+    /* A piece that touches the window may end outside, and so may the next one. Pieces may be turned by 45 degrees. */
+    const double most = 64 + 16 + reach_of(j) + s->camera.translate_px + 2 * 1.4143 * (double)CAMBER_PIECE_PX;
     camber_stages stages = {0};
     const camber_status status = camber_stages_tessellate(j->v->desc->context, s->polylines, &desc, &stages);
     if (status != CAMBER_OK)

@@ -272,8 +272,8 @@ mutant strip kernels/cull.h "the sentinel behind in the place of the one before"
 mutant strip kernels/cull.h "a sentinel on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
     'other.point > w->first && !camber_same_pixel(other, seam)'
 mutant strip kernels/cull.h "pieces that do not begin" 'real | CAMBER_POINT_FIRST | CAMBER_POINT_CUT' 'real'
-mutant strip kernels/cull.h "pieces that end where they began" 'camber_put_cut(w, p, from, to, real' \
-    'camber_put_cut(w, p, from, from, real'
+mutant strip kernels/cull.h "pieces that end where they began" 'camber_put_kept(w, p, piece->to, real | (is_seam' \
+    'camber_put_kept(w, p, piece->from, real | (is_seam'
 mutant strip kernels/cull.h "stretches that are not seen" 'stretch->x1 < p->seen_x0' 'stretch->x0 < p->seen_x0'
 mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' '-p->down_x + p->at_x'
 

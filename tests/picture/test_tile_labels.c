@@ -1,6 +1,6 @@
 /* Labels in tiles: a tile that is drawn by itself is the cut of a picture of 8 x 8 tiles, but for a few bytes that
- * differ by one level, because edges are computed from other corners. Which labels are there, and where, is compared to
- * the last bit by test_zoom_labels. */
+ * differ by one level if GL draws, which rounds by the picture. What kernels draw is compared to the byte by
+ * test_same_tiles, and which labels are there, and where, to the last bit by test_zoom_labels. */
 #include "pictures.h"
 
 #include "camber_tiles.h"
@@ -142,7 +142,7 @@ static void test_variable(void **state) {
                  1.0);
 }
 
-/* With everything else: lines that turn back on themselves just outside a tile may differ by more than one level. */
+/* With everything else. */
 static void test_map(void **state) {
     labelled_map map;
     map_open(&map, *state, make_style(*state, "city", false, ""), 1.0);

@@ -2,6 +2,7 @@
 #include "core.h"
 
 #include "camber_network.h"
+#include "lines/importance.h"
 
 #include <math.h>
 
@@ -239,6 +240,38 @@ static void test_many_nodes(void **state) {
     free(points);
 }
 
+/* Any number of threads gives the same, of lines that share many of their nodes, the first of which is not the first of
+ * the arrays. */
+static void test_threads(void **state) {
+    enum { EACH = 37, COUNT = 4000 };
+    const size_t total = (size_t)EACH * COUNT;
+    double *points = malloc(2 * total * sizeof *points);
+    float *one = malloc(total * sizeof *one), *several = malloc(total * sizeof *several);
+    size_t *offsets = malloc((COUNT + 1) * sizeof *offsets);
+    unsigned seed = 11;
+    host h;
+    camber_context *context = host_context(&h);
+    (void)state;
+    assert_true(points && one && several && offsets);
+    for (size_t i = 0; i < 2 * total; i++)
+        points[i] = floor(300.0 * random_of(&seed));
+    for (size_t i = 0; i <= COUNT; i++)
+        offsets[i] = EACH * i;
+    camber_importance_desc desc = {points, offsets + 1, COUNT - 1, one, 1};
+    assert_int_equal(camber_importance_weigh_by(context, &desc), CAMBER_OK);
+    desc.importance = several;
+    for (desc.threads = 2; desc.threads <= 7; desc.threads++) {
+        memset(several, 0, total * sizeof *several);
+        assert_int_equal(camber_importance_weigh_by(context, &desc), CAMBER_OK);
+        assert_memory_equal(one + EACH, several + EACH, (total - EACH) * sizeof *one);
+    }
+    host_done(&h, context);
+    free(offsets);
+    free(several);
+    free(one);
+    free(points);
+}
+
 /* Offsets that do not begin at 0: what lies before is left alone. */
 static void test_part_of_a_set(void **state) {
     (void)state;
@@ -311,15 +344,11 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_brute_force),
-        cmocka_unit_test(test_known_lines),
-        cmocka_unit_test(test_rings),
-        cmocka_unit_test(test_shared_nodes),
-        cmocka_unit_test(test_many_nodes),
-        cmocka_unit_test(test_part_of_a_set),
-        cmocka_unit_test(test_worst_case_is_bounded),
-        cmocka_unit_test(test_not_numbers),
-        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_brute_force),   cmocka_unit_test(test_known_lines),
+        cmocka_unit_test(test_rings),         cmocka_unit_test(test_shared_nodes),
+        cmocka_unit_test(test_many_nodes),    cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_part_of_a_set), cmocka_unit_test(test_worst_case_is_bounded),
+        cmocka_unit_test(test_not_numbers),   cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1141,6 +1141,44 @@ static void test_damage(void **state) {
     teardown(&f);
 }
 
+/* Filters of features that lack what is read, by type of geometry; a null that a feature has is no lack. */
+static void test_absent_properties(void **state) {
+    (void)state;
+    static const struct {
+        const char *filter;
+        bool absent[3], null[3]; /* of points, lines, polygons */
+    } cases[] = {
+        {"[\"has\", \"a\"]", {false, false, false}, {true, true, true}},
+        {"[\"!\", [\"has\", \"a\"]]", {true, true, true}, {false, false, false}},
+        {"[\"all\", [\"!\", [\"has\", \"a\"]], [\"==\", [\"geometry-type\"], \"Polygon\"]]",
+         {false, false, true},
+         {false, false, false}},
+        {"[\"any\", [\"has\", \"a\"], [\"==\", [\"geometry-type\"], \"LineString\"]]",
+         {false, true, false},
+         {true, true, true}},
+        {"[\"==\", [\"coalesce\", [\"get\", \"a\"], \"x\"], \"x\"]", {true, true, true}, {true, true, true}},
+        {"[\">\", [\"get\", \"a\"], 3]", {false, false, false}, {false, false, false}}, /* it fails */
+        {"[\"has\", \"a\", [\"properties\"]]", {false, false, false}, {false, false, false}},
+    };
+    static const char *const types[] = {"Point", "LineString", "Polygon"};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char json[1024];
+        fixture f;
+        setup(&f);
+        snprintf(json, sizeof json, LINE("\"source\": \"s\", \"filter\": %s"), cases[i].filter);
+        assert_int_equal(parse(&f, json), CAMBER_OK);
+        assert_true(f.style->schema.property_count <= 1);
+        for (int k = 0; k < 3; k++) {
+            camber_value value = {.type = CAMBER_VALUE_NULL};
+            const camber_feature_view view = {.values = &value, .geometry_type = types[k]};
+            assert_int_equal(camber_style_layer_matches(f.style->layers, 10.0, &view), cases[i].absent[k]);
+            value.boolean = true;
+            assert_int_equal(camber_style_layer_matches(f.style->layers, 10.0, &view), cases[i].null[k]);
+        }
+        teardown(&f);
+    }
+}
+
 /* Whichever allocation fails, nothing leaks and the status says so. */
 static void test_memory(void **state) {
     (void)state;
@@ -1264,13 +1302,28 @@ static void test_sets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_roads),       cmocka_unit_test(test_builtin),        cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_wrong_fills), cmocka_unit_test(test_circle),         cmocka_unit_test(test_layer),
-        cmocka_unit_test(test_plain),       cmocka_unit_test(test_odd_dashes),     cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_left_out),    cmocka_unit_test(test_filter_by_zoom), cmocka_unit_test(test_states),
-        cmocka_unit_test(test_reference),   cmocka_unit_test(test_wrong),          cmocka_unit_test(test_nesting),
-        cmocka_unit_test(test_many),        cmocka_unit_test(test_many_names),     cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_memory),      cmocka_unit_test(test_long_pointers),  cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_roads),
+        cmocka_unit_test(test_builtin),
+        cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_wrong_fills),
+        cmocka_unit_test(test_circle),
+        cmocka_unit_test(test_layer),
+        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_odd_dashes),
+        cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_left_out),
+        cmocka_unit_test(test_filter_by_zoom),
+        cmocka_unit_test(test_states),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_nesting),
+        cmocka_unit_test(test_many),
+        cmocka_unit_test(test_many_names),
+        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_absent_properties),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

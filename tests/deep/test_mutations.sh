@@ -325,8 +325,6 @@ mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least 
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
 mutant strip kernels/area.h "areas: edges inside a pixel that end with their cells" 'to[first + i] += height' 'to[first + i] += 0u'
-mutant strip kernels/area.h "areas: edges inside a pixel that change nothing right of it in their cells" '(height & BEHIND[column][i])' '0u'
-mutant strip kernels/area.h "areas: edges that leave out a cell of an overlap" '((two << last) - (one << first)) & 255u' '(one << first) & 255u'
 mutant strip kernels/area.h "areas: pixels as high as their tops" 'CAMBER_LANES * v + CAMBER_CELL_PX)' 'CAMBER_LANES * v)'
 mutant strip kernels/rasterize.cl "areas: bunches of other areas" 'CAMBER_LOAD(v, brushes) == brush' 'CAMBER_LOAD(v, brushes) != brush'
 group='along lines: glyphs'

@@ -17,8 +17,9 @@
  *                               A4--'              (pictured: two sides of one window)
  *
  * So that a line has the same bits in each window, its segments stay whole. Only long ones are halved until they are
- * short enough for exact floats, in the network's steps, and so at the same points for every window. With a pitch the
- * window does cut segments, because what is behind the camera has no place in the picture. */
+ * short enough for exact floats, in the network's steps, and so at the same points for every window. The window does cut
+ * segments of networks with coarse steps, because they would bend where they are halved, and those that are seen with a
+ * pitch, because what is behind the camera has no place in the picture. */
 #ifndef CAMBER_KERNELS_CULL_H
 #define CAMBER_KERNELS_CULL_H
 
@@ -30,6 +31,8 @@
 /* Longer segments are halved. Floats are exact to 1/4096 px up to 4096 px: so far reaches a piece that touches a window
  * of 2048 px and the margin around it. */
 #define CAMBER_PIECE_PX 1536.0f
+/* Segments are halved only if the network's steps are no longer than this. Those of maps have 1/4096 px. */
+#define CAMBER_FINE_PX (1.0f / 2048.0f)
 /* If segments are cut, points farther from the window than this are moved closer. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
@@ -162,9 +165,10 @@ CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b)
 
 /* ---- Whole segments ---- */
 
-/* Whether segments are cut at the window. They are, too, if even a step is longer than a piece may be. */
+/* Whether segments are cut at the window. They are, too, if steps are so coarse that a line would bend where it is
+ * halved. */
 CAMBER_FN camber_u32 camber_cuts(const camber_projection *p) {
-    return p->slope > 0.0f || p->step_px > CAMBER_PIECE_PX ? 1u : 0u;
+    return p->slope > 0.0f || p->step_px > CAMBER_FINE_PX ? 1u : 0u;
 }
 
 /* Returns how often a segment is halved. */

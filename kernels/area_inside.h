@@ -60,17 +60,16 @@ typedef struct camber_row_lists {
 CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
     for (int x = 0; x < CAMBER_TILE_CELLS; x++)
         lists->counts[x] = 0;
-    for (int k = 0; k < s->kept_count; k++) {
-        camber_tile_edge e;
-        camber_placed_edge_of(s, k, &e);
-        camber_cell_columns columns;
-        camber_edge_columns(&e, row, &columns);
-        for (int x = columns.first; x <= columns.last; x++) {
-            if (!(cells >> x & 1u))
-                continue;
-            if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
-                lists->edges[x][lists->counts[x]] = (camber_u16)k;
-            lists->counts[x]++;
+    for (int from = 0; from < s->kept_count; from += CAMBER_LANES) {
+        const camber_words passed = camber_kept_columns(s, from, row) & cells;
+        for (camber_u32 left = camber_lanes_set(passed != 0u); left; left &= left - 1u) {
+            const int k = camber_lowest(left);
+            for (camber_u32 columns = ((const camber_u32 *)&passed)[k]; columns; columns &= columns - 1u) {
+                const int x = camber_lowest(columns);
+                if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
+                    lists->edges[x][lists->counts[x]] = (camber_u16)(from + k);
+                lists->counts[x]++;
+            }
         }
     }
 }

@@ -13,9 +13,6 @@ typedef struct positions {
 
 constant float CELL_COLUMNS[16] = {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
 constant float CELL_ROWS[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
-constant uint LANE_BITS[16] = {0x1,   0x2,   0x4,   0x8,   0x10,   0x20,   0x40,   0x80,
-                               0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000};
-
 static inline void begin_positions(positions *at, float left, float top) {
     const float middle = 0.5f * CAMBER_CELL_PX;
     for (int i = 0; i < CAMBER_TILE_CELLS; i++) {
@@ -26,15 +23,6 @@ static inline void begin_positions(positions *at, float left, float top) {
     }
     at->middle_x = left + middle + CAMBER_CELL_PX * CAMBER_LOAD(0, CELL_COLUMNS);
     at->middle_y = top + middle + CAMBER_CELL_PX * CAMBER_LOAD(0, CELL_ROWS);
-}
-
-/* Returns the lanes of a mask as bits, the first one the lowest. */
-static inline uint bits_of(camber_mask lanes) {
-    uint words[CAMBER_LANES], bits = 0;
-    CAMBER_STORE(CAMBER_AS_WORDS(lanes) & CAMBER_LOAD(0, LANE_BITS), 0, words);
-    for (int i = 0; i < CAMBER_LANES; i++)
-        bits |= words[i];
-    return bits;
 }
 
 /* Cells, one bit each: those that a segment touches, those near one of its ends, and those that it fills. */

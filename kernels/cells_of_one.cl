@@ -84,9 +84,9 @@ static inline void sort_cells(drawn_segment from, const camber_edge *p, const po
 #else
         camber_cell_masks_of(&all, &bounds, x, y, &m);
 #endif
-        sets->partial |= (ulong)bits_of(m.partial) << i;
-        sets->near_end |= (ulong)bits_of(m.near_end) << i;
-        sets->full |= (ulong)bits_of(m.full) << i;
+        sets->partial |= (ulong)camber_lanes_set(m.partial) << i;
+        sets->near_end |= (ulong)camber_lanes_set(m.near_end) << i;
+        sets->full |= (ulong)camber_lanes_set(m.full) << i;
     }
     sets->partial &= cells;
     sets->near_end &= sets->partial;

@@ -17,8 +17,9 @@
  *                               A4--'              (pictured: two sides of one window)
  *
  * So that a line has the same bits in each window, its segments stay whole. Only long ones are halved until they are
- * short enough for exact floats, in the network's steps, and so at the same points for every window. With a pitch the
- * window does cut segments, because what is behind the camera has no place in the picture. */
+ * short enough for exact floats, in the network's steps, and so at the same points for every window. The window does
+ * cut segments of networks with coarse steps, because they would bend where they are halved, and those that are seen
+ * with a pitch, because what is behind the camera has no place in the picture. */
 #ifndef CAMBER_KERNELS_CULL_H
 #define CAMBER_KERNELS_CULL_H
 
@@ -30,6 +31,8 @@
 /* Longer segments are halved. Floats are exact to 1/4096 px up to 4096 px: so far reaches a piece that touches a window
  * of 2048 px and the margin around it. */
 #define CAMBER_PIECE_PX 1536.0f
+/* Segments are halved only if the network's steps are no longer than this. Those of maps have 1/4096 px. */
+#define CAMBER_FINE_PX (1.0f / 2048.0f)
 /* If segments are cut, points farther from the window than this are moved closer. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
@@ -162,9 +165,10 @@ CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b)
 
 /* ---- Whole segments ---- */
 
-/* Whether segments are cut at the window. They are, too, if steps are so long that a piece might have none. */
+/* Whether segments are cut at the window. They are, too, if steps are so coarse that a line would bend where it is
+ * halved. */
 CAMBER_FN camber_u32 camber_cuts(const camber_projection *p) {
-    return p->slope > 0.0f || p->step_px > 0.5f * CAMBER_PIECE_PX ? 1u : 0u;
+    return p->slope > 0.0f || p->step_px > CAMBER_FINE_PX ? 1u : 0u;
 }
 
 /* Returns how often a segment is halved. */
@@ -179,37 +183,24 @@ CAMBER_FN camber_u32 camber_halvings(const camber_walk *w, const camber_projecti
     return count;
 }
 
-/* A coordinate below 2^31 steps, and a part of a step in units of 2^-31. */
-typedef struct camber_fixed {
-    camber_u32 steps, part;
-} camber_fixed;
-
-CAMBER_FN camber_fixed camber_fixed_middle(camber_fixed a, camber_fixed b) {
-    const camber_u32 steps = a.steps + b.steps, part = (a.part + b.part) / 2u + (steps & 1u) * 0x40000000u;
-    const camber_fixed middle = {steps / 2u + (part >> 31), part & 0x7fffffffu};
-    return middle;
-}
-
 /* Returns the i-th end of the pieces of a segment that is halved `count` times; from b to a they are the same. Those
  * that are not a or b have no point. */
 CAMBER_FN camber_kept_point camber_piece_end(const camber_walk *w, const camber_projection *p, camber_kept_point a,
                                              camber_kept_point b, camber_u32 count, camber_u32 i) {
     if (i == 0u || i >> count)
         return i ? b : a;
-    camber_fixed x0 = {(camber_u32)w->x[a.point], 0u}, y0 = {(camber_u32)w->y[a.point], 0u};
-    camber_fixed x1 = {(camber_u32)w->x[b.point], 0u}, y1 = {(camber_u32)w->y[b.point], 0u};
+    camber_u32 x0 = (camber_u32)w->x[a.point], y0 = (camber_u32)w->y[a.point];
+    camber_u32 x1 = (camber_u32)w->x[b.point], y1 = (camber_u32)w->y[b.point];
     for (camber_u32 k = count; k-- > 0u;) {
-        const camber_fixed x = camber_fixed_middle(x0, x1), y = camber_fixed_middle(y0, y1);
-        const camber_u32 later = i >> k & 1u;
+        const camber_u32 x = (x0 + x1) / 2u, y = (y0 + y1) / 2u, later = i >> k & 1u;
         x0 = later ? x : x0;
         y0 = later ? y : y0;
         x1 = later ? x1 : x;
         y1 = later ? y1 : y;
     }
-    const camber_i32 x = (camber_i32)(x0.steps + (x0.part >> 30)), y = (camber_i32)(y0.steps + (y0.part >> 30));
-    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, x, y);
+    camber_kept_point at = camber_kept_point_at(p, CAMBER_NO_POINT, (camber_i32)x0, (camber_i32)y0);
 #if CAMBER_WALK_ARC_LENGTHS
-    at.along = w->lengths ? camber_along_at(w, a, b, x, y) : 0.0f;
+    at.along = w->lengths ? camber_along_at(w, a, b, (camber_i32)x0, (camber_i32)y0) : 0.0f;
 #endif
     return at;
 }

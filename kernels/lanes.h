@@ -133,25 +133,44 @@ CAMBER_FN int camber_integer_of(const camber_mask *vector, int k) {
 #endif
 
 #if CAMBER_HAS_VECTORS
-/* Whether any lane of a mask is set, and whether all are. PoCL's own any and all look at one lane after another. */
-#if CAMBER_LANES == 16
-#define CAMBER_HALF_OF(mask, operator) ((mask).lo operator(mask).hi)
+/* Returns which lanes of a mask are set, one bit each, the first lane the lowest. Processors know that in an
+ * instruction, for which OpenCL C has no words. */
+#if defined(CAMBER_AHEAD_OF_TIME) && defined(__AVX512DQ__) && CAMBER_LANES == 16
+CAMBER_FN camber_u32 camber_lanes_set(camber_mask mask) {
+    return (ushort)__builtin_ia32_cvtd2mask512(mask);
+}
+#elif defined(CAMBER_AHEAD_OF_TIME) && defined(__AVX__) && CAMBER_LANES == 8
+CAMBER_FN camber_u32 camber_lanes_set(camber_mask mask) {
+    return (camber_u32)__builtin_ia32_movmskps256(as_float8(mask));
+}
 #else
-#define CAMBER_HALF_OF(mask, operator) (mask)
+constant uint LANE_BITS[16] = {0x1,   0x2,   0x4,   0x8,   0x10,   0x20,   0x40,   0x80,
+                               0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000};
+
+CAMBER_FN camber_u32 camber_lanes_set(camber_mask mask) {
+    const camber_words bits = CAMBER_AS_WORDS(mask) & CAMBER_LOAD(0, LANE_BITS);
+#if CAMBER_LANES == 16
+    const uint8 eight = bits.lo | bits.hi;
+#else
+    const uint8 eight = bits;
+#endif
+    const uint4 four = eight.lo | eight.hi;
+    const uint2 two = four.lo | four.hi;
+    return two.x | two.y;
+}
 #endif
 
+/* Whether any lane of a mask is set, and whether all are. PoCL's own any and all look at one lane after another. */
 CAMBER_FN int camber_any(camber_mask mask) {
-    const int8 eight = CAMBER_HALF_OF(mask, |);
-    const int4 four = eight.lo | eight.hi;
-    const int2 two = four.lo | four.hi;
-    return (two.x | two.y) != 0;
+    return camber_lanes_set(mask) != 0u;
 }
 
 CAMBER_FN int camber_all(camber_mask mask) {
-    const int8 eight = CAMBER_HALF_OF(mask, &);
-    const int4 four = eight.lo & eight.hi;
-    const int2 two = four.lo & four.hi;
-    return (two.x & two.y) != 0;
+    return camber_lanes_set(mask) == (1u << CAMBER_LANES) - 1u;
+}
+#elif !defined(CAMBER_GLSL)
+CAMBER_FN camber_u32 camber_lanes_set(camber_mask mask) {
+    return mask ? 1u : 0u;
 }
 #endif
 

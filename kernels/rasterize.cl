@@ -173,6 +173,12 @@ static inline void queue_vector(const camber_words *words, camber_mask wanted, e
                              camber_real),
             0, b->ends[i] + b->count);
     b->count += (uint)popcount((ulong)lanes);
+#elif defined(CAMBER_AHEAD_OF_TIME) && defined(__AVX2__) && defined(__BMI2__) && CAMBER_LANES == 8
+    const ulong lanes = camber_lanes_set(wanted), bytes = 255ul * __builtin_ia32_pdep_di(lanes, 0x0101010101010101ul);
+    const int8 order = convert_int8(__builtin_astype(__builtin_ia32_pext_di(0x0706050403020100ul, bytes), uchar8));
+    for (size_t i = 0; i < 4; i++)
+        CAMBER_STORE(__builtin_ia32_permvarsf256(CAMBER_AS_REAL(words[i]), order), 0, b->ends[i] + b->count);
+    b->count += (uint)popcount(lanes);
 #else
     for (int k = 0; k < CAMBER_LANES; k++) {
         for (size_t i = 0; i < 4; i++)

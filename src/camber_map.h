@@ -260,6 +260,7 @@ typedef struct camber_view_desc {
     uint32_t width, height;          /* CSS px. 0: 1024 */
     double ratio;                    /* device px per CSS px. 0: 1 */
     bool cover;                      /* FIT and BBOX fill the picture, and cut off what does not fit on it */
+    bool whole_labels;               /* no label that the picture's edge would cut is placed, as on paper */
 } camber_view_desc;
 
 /* Returns the view that the style's document asks for: centre, zoom, bearing and pitch, at most 85. Values that the

@@ -61,8 +61,8 @@ CAMBER_API void camber_page_destroy(camber_page *page);
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_page_set_credit(camber_page *page, const char *credit);
 
-/* Sets the width, the height and the ratio of a view, so that its scene fits into the page. What the view shows is left
- * as it is. */
+/* Sets the width, the height and the ratio of a view, so that its scene fits into the page, and whole_labels. What the
+ * view shows is left as it is. */
 CAMBER_API void camber_page_set_view(const camber_page *page, camber_view_desc *view);
 
 typedef struct camber_page_info {

@@ -1,5 +1,5 @@
 import os
-from typing import Any, Iterable, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Iterable, NamedTuple, NoReturn, Optional, Sequence, Tuple, Union
 
 import numpy
 import numpy.typing
@@ -74,7 +74,7 @@ class Network:
     bounds: Tuple[float, float, float, float]
     def __init__(self, points: _Lines, offsets: Optional[Any] = None, *, rows: Optional[Any] = None,
                  importance: Optional[_Array] = None, keep_open: bool = False, dashed: bool = False,
-                 context: Optional[Context] = None, **unknown: Any) -> None: ...
+                 context: Optional[Context] = None, **unknown: NoReturn) -> None: ...
     def draw(self, *, center: Optional[Sequence[float]] = None, scale: Optional[float] = None, bearing: float = 0,
              pitch: float = 0, simplify: float = 0, width: _Widths = 8, color: _Colors = "#336",
              size: _Size = (1024, 1024), background: Optional[_Color] = None, overlap: str = "flatten",
@@ -124,11 +124,11 @@ class Map:
     def __init__(self, *inputs: Any, style: Union[_Path, dict[str, Any], None] = None, theme: str = "light",
                  layer: Optional[str] = None, where: Optional[str] = None, labels: bool = True,
                  fonts: Union[_Path, Sequence[_Path]] = (), language: Optional[str] = None,
-                 context: Optional[Context] = None, **unknown: Any) -> None: ...
+                 context: Optional[Context] = None, **unknown: NoReturn) -> None: ...
     def draw(self, *, center: Optional[Sequence[float]] = None, zoom: Optional[float] = None,
              bbox: Optional[Sequence[float]] = None, bearing: Optional[float] = None, pitch: Optional[float] = None,
              size: _Size = (1024, 1024), ratio: float = 1, simplify: float = 0.1, method: str = "strip",
-             premultiplied: bool = False, out: Optional[_Picture] = None, **unknown: Any) -> _Picture: ...
+             premultiplied: bool = False, out: Optional[_Picture] = None, **unknown: NoReturn) -> _Picture: ...
     def _repr_png_(self) -> bytes: ...
     def save(self, path: _Path, *, paper: Union[str, Sequence[float], None] = None, landscape: bool = False,
              margin: Optional[float] = None, dpi: Optional[float] = None, title: Optional[str] = None,

@@ -9,6 +9,8 @@ import collections
 import functools
 import logging
 import os
+import re
+import tempfile
 import threading
 
 from ._library import ffi, lib
@@ -88,6 +90,15 @@ def _is_object(value):
     return bool(kind and kind.kind == "pointer" and kind.item.kind == "struct" and kind.item.fields is None)
 
 
+TABLE_PREFIX = "camber-table-"  # of temporary files
+
+
+def name_tables(text):
+    """Calls a GeoDataFrame the data, and not by the temporary file that the library reads in its place."""
+    folder = re.escape(os.path.join(os.path.abspath(tempfile.gettempdir()), TABLE_PREFIX))
+    return re.sub(folder + r"\w+\.geojson", "the data", text)
+
+
 class _Log:
     """Keeps the message of the last failure for the exception, and also logs it at level DEBUG."""
 
@@ -96,7 +107,7 @@ class _Log:
 
 @ffi.def_extern()
 def camber_python_log(user, level, message):
-    text = text_of(message)
+    text = name_tables(text_of(message))
     if level == lib.CAMBER_LOG_ERROR:
         ffi.from_handle(user).message = text
     logger.log(LEVELS.get(level, logging.DEBUG), "%s", text)

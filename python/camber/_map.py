@@ -12,7 +12,8 @@ import warnings
 
 import numpy
 
-from ._core import ArgumentError, FileError, NotFoundError, as_path, as_text, default, ffi, lib, pick, text_of
+from ._core import (TABLE_PREFIX, ArgumentError, FileError, NotFoundError, as_path, as_text, default, ffi, lib, pick,
+                    text_of)
 from ._draw import ENCODINGS, METHODS, TAKE_ROWS, as_output, as_size, encode, render_frame
 
 THEMES = {"light": lib.CAMBER_THEME_LIGHT, "dark": lib.CAMBER_THEME_DARK}
@@ -157,7 +158,7 @@ def write_frame(frame, file):
         frame = frame.to_crs(4326)
     columns = [(str(name), frame.iloc[:, i].tolist()) for i, name in enumerate(getattr(frame, "columns", ()))
                if name != frame.geometry.name]  # by number, because names may occur twice
-    file.write('{"type":"FeatureCollection","features":[\n')
+    file.write('{"type":"FeatureCollection","name":"data","features":[\n')
     for i, geometry in enumerate(find_geojson(frame.geometry.values)):
         properties = {name: as_json(column[i]) for name, column in columns}
         file.write('%s{"type":"Feature","properties":%s,"geometry":%s}\n'
@@ -204,7 +205,7 @@ class Map:
             except TypeError:
                 raise TypeError("an input is of type %s; give a file, or a GeoDataFrame. camber.plot(data) draws lines of "
                                 "other kinds" % type(given).__name__) from None
-        file = tempfile.NamedTemporaryFile("w", suffix=".geojson", encoding="utf-8")
+        file = tempfile.NamedTemporaryFile("w", prefix=TABLE_PREFIX, suffix=".geojson", encoding="utf-8")
         self._kept.append(file)
         write_frame(given, file)
         file.flush()

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import warnings
 
 import numpy
@@ -348,6 +349,16 @@ def test_a_map_of_a_table(frame, tmp_path):
         camber.Map(frame)
     with pytest.warns(UserWarning, match="the picture is empty: .*bbox="):
         shown.draw(center=(0, 0), zoom=12)
+
+
+def test_a_map_of_a_table_names_no_file(frame, caplog):
+    with pytest.raises(camber.ArgumentError, match="^the data: the filter .*layer \"data\": "):
+        camber.Map(frame, where="none = 1").draw()
+    with pytest.raises(camber.InputError, match="^the data: no layer \"none\"; choose one of: data$"):
+        camber.Map(frame, layer="none").draw()
+    with caplog.at_level("INFO", "camber"):
+        camber.Map(frame.assign(geometry=[None, *frame.geometry[1:]]), style="roads").draw()
+    assert "the data: left out" in caplog.text and tempfile.gettempdir() not in caplog.text
 
 
 def test_a_map_on_paper(city, tmp_path):

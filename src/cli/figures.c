@@ -37,6 +37,20 @@ camber_figure camber_figure_bytes(uint64_t size_bytes) {
     return figure;
 }
 
+camber_figure camber_figure_limit(uint64_t size_bytes) {
+    camber_figure figure;
+    uint64_t size = size_bytes;
+    int unit = -1;
+    while (unit < 2 && size && size % 1024 == 0) {
+        size /= 1024;
+        unit++;
+    }
+    if (unit < 0 || size > 9999)
+        return camber_figure_bytes(size_bytes);
+    snprintf(figure.text, sizeof figure.text, "%d%c", (int)size, "KMG"[unit]);
+    return figure;
+}
+
 camber_figure camber_figure_time(double ms) {
     camber_figure figure;
     const double s = ms > 0 && ms < 1e12 ? ms / 1e3 : 0.0;

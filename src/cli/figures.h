@@ -15,6 +15,8 @@ camber_figure camber_figure_count(uint64_t count);
 camber_figure camber_figure_number(double value, int decimals);
 /* "812 bytes", "1.2 MB"; a megabyte is 1,000,000 bytes. */
 camber_figure camber_figure_bytes(uint64_t size_bytes);
+/* "200M", as options take it: a size in KiB, MiB or GiB. If it is no whole number of them, "1.2 MB". */
+camber_figure camber_figure_limit(uint64_t size_bytes);
 /* "0.35 s", "12.3 s", "2 min 5 s", "3 h 20 min" */
 camber_figure camber_figure_time(double ms);
 

@@ -17,7 +17,7 @@
 
 typedef struct camber_report {
     bool quiet, verbose, json;
-    bool bars; /* standard error is a terminal, and the user wants progress bars */
+    bool bars;      /* standard error is a terminal, and the user wants progress bars */
     bool has_steps; /* the bar shows the verb's steps, and not what the library does during each of them */
     camber_progress_bar bar;
     bool terminal;      /* standard error is a terminal, and --quiet is not given */

@@ -315,6 +315,7 @@ camber_method camber_session_method(const camber_session *session) {
 }
 
 void camber_session_say_memory(const camber_session *session) {
+    const uint64_t asked = session->options->memory_bytes;
     char meshes[96] = "";
     if (!session->report->verbose || !session->budget)
         return;
@@ -323,9 +324,10 @@ void camber_session_say_memory(const camber_session *session) {
                  camber_figure_bytes(camber_device_get_memory(session->device).most_bytes).text);
     camber_report_say(session->report,
                       "memory: the process took at most %s, drivers and libraries included; without them it may take "
-                      "%s%s",
+                      "%s%s%s",
                       camber_figure_bytes(camber_peak_rss_bytes()).text,
-                      camber_figure_bytes(camber_budget_get_most_bytes(session->budget)).text, meshes);
+                      camber_figure_limit(camber_budget_get_most_bytes(session->budget)).text,
+                      asked && asked < LEAST_BUDGET_BYTES ? " (the least)" : "", meshes);
 }
 
 void camber_session_describe(const camber_session *session, json_t *object) {

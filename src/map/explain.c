@@ -54,7 +54,7 @@ static void say_read(sentence *s, const camber_features *features) {
         say(s, " of %.1f MB", 1e-6 * bytes);
     else if (bytes > 0.0)
         say(s, bytes >= 1e4 ? " of %.0f kB" : " of %.0f bytes", bytes >= 1e4 ? 1e-3 * bytes : bytes);
-    say(s, any ? " read" : " read that could be drawn");
+    say(s, any ? " read" : " read that the style could draw");
 }
 
 /* ---- Why none of it shows ---- */
@@ -72,7 +72,7 @@ static void say_unread(sentence *s, const camber_features *features) {
         say(s, ": the style does not draw the geometry of %zu features; choose another style with --style",
             stats->skipped_features);
     else
-        say(s, "; check that this is the file you mean");
+        say(s, "; check that this is the file you mean, or choose another style with --style");
 }
 
 static bool is_labelled(const camber_features *features, const camber_feature_class *class, double zoom) {

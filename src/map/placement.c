@@ -193,7 +193,7 @@ static camber_status add_shape(placer *p, camber_obstacle shape) {
     return CAMBER_OK;
 }
 
-/* Labels that avoid edges do not cross the edges of the picture. */
+/* Labels that avoid edges do not cross the edges of the picture; on paper no label does. */
 static bool crosses_edge(const placer *p, const camber_obstacle *shape) {
     const camber_view *view = p->layout->view;
     return !p->domain &&
@@ -212,7 +212,7 @@ static bool is_free(placer *p, size_t first, camber_symbol_overlap overlap, bool
     bool held = false, doubtful = false;
     for (size_t i = first; i < p->shape_count; i++) {
         const camber_obstacle *shape = p->shapes + i;
-        if (avoid_edges && crosses_edge(p, shape))
+        if ((avoid_edges || p->layout->view->whole_labels) && crosses_edge(p, shape))
             return false;
         held |= camber_collision_holds(&p->grid, shape);
         if (camber_collision_hits(&p->grid, shape, overlap))

@@ -134,6 +134,7 @@ camber_status camber_view_create(camber_context *context, const camber_view_desc
         return status;
     made.pitch_deg = desc->pitch_deg;
     made.cover = desc->cover;
+    made.whole_labels = desc->whole_labels;
     set_bearing(&made, desc->bearing_deg);
     set_zoom(&made, 0.0);
     switch (desc->kind) {

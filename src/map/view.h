@@ -24,6 +24,7 @@ typedef struct camber_view {
     double ratio;           /* device px per CSS px */
     uint32_t width, height; /* device px */
     bool cover;             /* camber_view_frame fills the picture with the bounds */
+    bool whole_labels;      /* labels do not cross the picture's edge */
 } camber_view;
 
 /* Checks the desc, and completes a BBOX or CENTER view. A FIT view starts as the whole world, and then needs

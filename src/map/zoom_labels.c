@@ -504,7 +504,7 @@ bool camber_view_has_zoom_labels(const camber_style *style, const camber_view *v
     const double ratio = view->scale_px / (WORLD_PX * exp2(view->zoom));
     return view->zoom >= 0.0 && fabs(view->zoom - floor(view->zoom + 0.5)) < 1e-9 && fabs(view->bearing_deg) <= 0.0 &&
            !(view->pitch_deg > 0.0) && fabs(ratio - view->ratio) < 1e-9 * ratio && view->width <= view->scale_px &&
-           !avoids_edges(style);
+           !view->whole_labels && !avoids_edges(style);
 }
 
 camber_status camber_zoom_labels_place_view(const camber_features *features, const camber_view *view,

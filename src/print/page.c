@@ -198,6 +198,7 @@ void camber_page_set_view(const camber_page *page, camber_view_desc *view) {
     view->width = page->view_width;
     view->height = page->view_height;
     view->ratio = page->desc.ratio;
+    view->whole_labels = true;
 }
 
 camber_page_info camber_page_get_info(const camber_page *page) {

@@ -373,6 +373,8 @@ static void take_body(request *r, const char *bytes, size_t size) {
 
 static const char NO_PICTURES[] = "an archive's tiles are served as they are; /static draws a map, so serve that";
 
+static const char NO_JPEG[] = "tiles are not drawn as JPEG; ask for .png or .webp";
+
 static enum MHD_Result answer_drawn(request *r) {
     camber_server *server = r->listener->server;
     const camber_content_view view = look(server, &r->route, NULL);
@@ -385,6 +387,8 @@ static enum MHD_Result answer_drawn(request *r) {
         return send_error(r, 503);
     if (view.is_archive)
         return is_tile ? answer_stored(r, &view) : send_refusal(r, 404, NO_PICTURES);
+    if (r->route.type == CAMBER_ROUTE_JPEG)
+        return send_refusal(r, 400, NO_JPEG);
     if (r->route.type > CAMBER_ROUTE_WEBP || (r->route.dark && !view.has_dark) ||
         (r->route.type == CAMBER_ROUTE_WEBP && !camber_encoding_is_built(CAMBER_ENCODING_WEBP)))
         return send_error(r, 404);

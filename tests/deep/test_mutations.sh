@@ -325,6 +325,7 @@ mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least 
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
 mutant strip kernels/area.h "areas: edges inside a pixel that end with their cells" 'to[first + i] += height' 'to[first + i] += 0u'
+mutant strip kernels/area.h "areas: pixels as high as their tops" 'CAMBER_LANES * v + CAMBER_CELL_PX)' 'CAMBER_LANES * v)'
 mutant strip kernels/rasterize.cl "areas: bunches of other areas" 'CAMBER_LOAD(v, brushes) == brush' 'CAMBER_LOAD(v, brushes) != brush'
 group='along lines: glyphs'
 mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \

@@ -500,29 +500,6 @@ static void test_drops_by_importance(void **state) {
     camber_network_destroy(network);
 }
 
-/* Steps of many px: pieces of a segment that is halved have a length, as far as halving goes. */
-static void test_pieces_have_a_length(void **state) {
-    network_devices *b = *state;
-    const camber_stroke stroke = {.width_px = 2};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
-    const double step = exp2(-31);
-    const double points[] = {0.5, 0.5, 0.5 + 3 * step, 0.5, 0, 0, 1, 0};
-    const size_t offsets[] = {0, 2, 4};
-    camber_network *network =
-        network_make(b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 2});
-    for (double step_px = 300; step_px < 1700; step_px += 50) {
-        const camber_camera camera = {.x = 0.5, .y = 0.5, .scale_px = step_px / step, .width = 12000, .height = 100};
-        camber_lines lines;
-        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
-        assert_int_equal(lines.polyline_count, 1);
-        for (size_t i = 1; i < lines.point_count; i++)
-            assert_true(lines.points[2 * i] > lines.points[2 * i - 2]);
-        camber_lines_destroy(&lines);
-        compare(b, 0, network, &camera, &desc);
-    }
-    camber_network_destroy(network);
-}
-
 /* The first one of two points on the same pixel decides into how many pieces the segment from there is halved, for the
  * segment after that, too. */
 static void test_pieces_from_the_same_pixel(void **state) {
@@ -658,7 +635,6 @@ int main(void) {
         cmocka_unit_test(test_sees_all_in_the_picture),
         cmocka_unit_test(test_keeps_everything),
         cmocka_unit_test(test_drops_by_importance),
-        cmocka_unit_test(test_pieces_have_a_length),
         cmocka_unit_test(test_pieces_from_the_same_pixel),
         cmocka_unit_test(test_allocations_fail),
         cmocka_unit_test(test_wrong_input),

@@ -449,7 +449,8 @@ awk 'BEGIN { printf "{\"type\": \"LineString\", \"coordinates\": [[0, 0]"
     for (i = 1; i < 12000; i++) printf ", [%g, %d]", i / 1000, i % 2; print "]}" }' >"$tmp/in/long.geojson"
 expect 65 "memory that one line overfills" render "$tmp/in/long.geojson" -o a.png --memory 256K
 says 'polyline 0 takes [0-9]* bytes, more than half of the 262144 that meshes may hold; allow more memory'
-expect 0 "memory that it does not" render "$tmp/in/long.geojson" -o a.png --memory 4M
+expect 0 "memory that it does not" render "$tmp/in/long.geojson" -o a.png --memory 4M -v
+says 'without them it may take 128M (the least), of which'
 rm a.png
 if command -v taskset >/dev/null && [ "$(nproc)" -gt 1 ]; then
     name="not on the first core"

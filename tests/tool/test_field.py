@@ -196,6 +196,8 @@ def check_told():
     check("nothing is in the view" in text and "longitudes come first" in text, text)
     text = said("render", empty, *render)
     check("no feature of" in text and "check that this is the file you mean" in text, text)
+    text = said("render", write("point.geojson", feature("Point", [5, 5])), *render, "--style", "roads")
+    check("that the style could draw" in text and "another style with --style" in text, text)
     text = said("tiles", line, "-o", "out.pmtiles", "-f", "--style", "none.json", "--max-zoom", "3")
     check("there are no tiles: 1 line of" in text and "no layer of the style draws" in text, text)
     text = said("tiles", late, "-o", "out.pmtiles", "-f", "--style", "none.json", "--max-zoom", "3")

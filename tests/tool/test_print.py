@@ -167,8 +167,9 @@ PLACES = [(f"{NAMES[i % 6]} {i}", {"type": "Point", "coordinates": [0.02 * (i % 
           for i in range(60)]
 PLACES += [(f"Rue de l’Église {i}", {"type": "LineString", "coordinates": [[0.002, 0.07 + 0.008 * i], [
     0.06, 0.074 + 0.01 * i], [0.118, 0.071 + 0.008 * i]]}) for i in range(5)]
+CUT = "Point Nemo", {"type": "Point", "coordinates": [0.0005, 0.065]}  # at the edge
 LABELS = {"version": 8, "sources": {"names": {"type": "geojson", "data": {"type": "FeatureCollection", "features": [
-    {"type": "Feature", "properties": {"name": name}, "geometry": geometry} for name, geometry in PLACES]}}}, "layers": [
+    {"type": "Feature", "properties": {"name": name}, "geometry": geometry} for name, geometry in [*PLACES, CUT]]}}}, "layers": [
         {"id": "points", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "Point"],
          "layout": {"text-field": ["get", "name"], "text-size": 11, "text-max-width": 30}},
         {"id": "lines", "type": "symbol", "source": "names", "filter": ["==", ["geometry-type"], "LineString"],
@@ -178,12 +179,14 @@ if have("pdftotext"):
     with open(os.path.join(FOLDER, "labels.json"), "w", encoding="utf-8") as file:
         json.dump(LABELS, file)
     named = os.path.join(FOLDER, "labels.pdf")
-    told = run("render", "--style", os.path.join(FOLDER, "labels.json"), "-o", named, "--size", "900x900", "--bbox",
-               "0,0,0.12,0.12", "--json")
-    expect(json.loads(told.stdout)["labels"] == len(PLACES), f"all labels are placed: {told.stdout}")
+    for path, count in (named, len(PLACES)), (os.path.join(FOLDER, "labels.png"), len(PLACES) + 1):
+        told = run("render", "--style", os.path.join(FOLDER, "labels.json"), "-o", path, "--size", "900x900", "--bbox",
+                   "0,0,0.12,0.12", "--json")
+        expect(json.loads(told.stdout)["labels"] == count, f"labels are placed, and on a page no edge cuts one: {told.stdout}")
     text = subprocess.run(["pdftotext", named, "-"], capture_output=True, text=True).stdout
     for name, _ in PLACES:
         expect(name in " ".join(text.split()), f"{name} is found")
+    expect(CUT[0] not in text, "a label that the edge would cut is left out")
 
 # ---- SVG ----
 

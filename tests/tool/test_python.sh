@@ -30,6 +30,8 @@ if [ -n "$sanitizer" ]; then
     echo "under a sanitizer: the stubs are not compared"
 elif "$python" -c 'import mypy' 2>/dev/null; then # the stubs say what the module has
     (cd "$folder" && "$python" -m mypy.stubtest camber --ignore-missing-stub) || exit 1
+    (cd "$folder/site" && "$python" -m mypy --cache-dir "$folder" -c 'import camber; camber.Map("a", column="b")') |
+        grep -q 'Argument "column" to "Map"' || { echo "the stubs take an argument that does not exist"; exit 1; }
 else
     echo "no mypy: the stubs are not compared"
 fi

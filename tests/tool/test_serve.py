@@ -84,9 +84,12 @@ def test_routes():
         expect(status == 400 and b"at most 600 px (--max-size), and R 4 (--max-ratio)" in body, f"{path}: {status}: {body}")
         expect(server.get(path, port=server.metrics_port)[0] == 404, "pictures at the metrics' address")
     for path in ("/metrics", "/page/none.js", "/events",
-                 tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".jpg", "/favicon.ico", "/robots.txt"):
+                 tile + "@5x.png", tile + ".pbf", "/dark" + tile + ".avif", "/favicon.ico", "/robots.txt"):
         status, headers, body = server.get(path)
         expect(status == 404 and body == b"404 not found\n", f"{path}: {status}")
+    for path in (tile + ".jpg", "/dark" + tile + "@2x.jpeg", "/static/0,0,0/9x9.jpg"):
+        status, headers, body = server.get(path)
+        expect(status == 400 and b"not drawn as JPEG; ask for .png" in body, f"{path}: {status}: {body}")
     metrics = server.get("/metrics", port=server.metrics_port)
     expect(metrics[0] == 200 and b'camber_requests_total{route="tile",status="200"}' in metrics[2], metrics)
     expect(server.get(tile + ".png", port=server.metrics_port)[0] == 404, "tiles at the metrics' address")
@@ -1110,7 +1113,7 @@ def test_labels():
     for zoom, x, y in labelled[:12]:
         expect(server.get(f"/{zoom}/{x}/{y}@2x.png")[2] == dense[zoom, x, y], f"{zoom}/{x}/{y}@2x differs")
     there = (COLUMN / 2 ** ZOOM * 360 - 180, math.degrees(math.atan(math.sinh(math.pi * (1 - 2 * ROW / 2 ** ZOOM)))))
-    # At a whole zoom and upright, camber render draws the labels of the zoom in place of those of the view.
+    # No whole zoom with north up: there render has the labels of tiles, and a server's pictures those of the view.
     for zoom, bearing, pitch in ((13.2, 0, 0), (13.4, 0, 0), (13, 40, 0), (13.5, -30, 50)):
         drawn = []
         for options in ([], ["--no-labels"]):

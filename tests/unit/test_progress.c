@@ -89,6 +89,11 @@ static void test_figures(void **state) {
     assert_string_equal(camber_figure_bytes(0).text, "0 bytes");
     assert_string_equal(camber_figure_bytes(1).text, "1 byte");
     assert_string_equal(camber_figure_bytes(1500).text, "1.5 KB");
+    assert_string_equal(camber_figure_limit(512 << 20).text, "512M");
+    assert_string_equal(camber_figure_limit(3ull << 40).text, "3072G");
+    assert_string_equal(camber_figure_limit(256 << 10).text, "256K");
+    assert_string_equal(camber_figure_limit(100000000).text, "100 MB");
+    assert_string_equal(camber_figure_limit(0).text, "0 bytes");
     assert_string_equal(camber_figure_bytes(999949).text, "1.0 MB");
     assert_string_equal(camber_figure_bytes(37300000).text, "37.3 MB");
     assert_string_equal(camber_figure_bytes(UINT64_C(123456789012)).text, "123 GB");

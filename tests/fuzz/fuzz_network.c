@@ -12,6 +12,7 @@
  */
 #include "fuzz_drawing.h"
 
+#include "kernels/cull.h"
 #include "points/network.h"
 
 #include <math.h>
@@ -146,15 +147,17 @@ static double margin_of(const input *from) {
     return 80 + fmin(reach, 70000) + fmin(beside, 70000) + looks;
 }
 
-/* Pieces begin and end, points lie in the window, and those that follow each other differ. */
+/* Pieces begin and end, points are in the window or end a piece of a segment that touches it or the next piece, and
+ * those that follow each other differ. */
 static void check_slots(const camber_polylines *slots, const input *from) {
     const camber_camera *camera = &from->camera;
+    const double pieces = 2 * 1.4143 * (double)CAMBER_PIECE_PX;
     const double margin = margin_of(from) * 1.0001, wide = camera->width, high = camera->height;
     /* A tilted camera sees 14 times as far as to its centre at most. */
     const bool tilted = camera->pitch_deg > 0;
-    const double aside = tilted ? 14 * wide + 2 * margin * (2 + wide / high) : margin;
-    const double ahead = tilted ? 30 * high + 300 + margin : margin;
-    const double behind = tilted ? 2 * high + 10 + margin : margin;
+    const double aside = tilted ? 14 * wide + 2 * margin * (2 + wide / high) : margin + pieces;
+    const double ahead = tilted ? 30 * high + 300 + margin : margin + pieces;
+    const double behind = tilted ? 2 * high + 10 + margin : margin + pieces;
     bool open = false;
     for (size_t i = 0; i <= slots->polyline_count; i++)
         REQUIRE(slots->first_slots[i] <= slots->slot_count &&

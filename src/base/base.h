@@ -92,6 +92,8 @@ void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc);
 bool camber_budget_take(camber_context *context, uint64_t size_bytes);
 void camber_budget_give(camber_context *context, uint64_t size_bytes);
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes);
+/* Returns how many bytes the limit of the address space (ulimit -v) leaves; UINT64_MAX: there is no limit. */
+uint64_t camber_address_space_left(void);
 camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes);
 /* Checks that the process has enough address space for OpenCL's drivers. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_budget_check_drivers(camber_context *context);

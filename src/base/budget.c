@@ -93,7 +93,7 @@ static uint64_t group_free_bytes(void) {
     return least;
 }
 
-static uint64_t limit_free_bytes(void) {
+uint64_t camber_address_space_left(void) {
     struct rlimit limit;
     uint64_t pages = 0;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -113,7 +113,7 @@ static uint64_t machine_free_bytes(void) {
 }
 
 static void look_up(camber_budget *budget, uint64_t held_bytes) {
-    const uint64_t free_bytes = smaller(machine_free_bytes(), smaller(group_free_bytes(), limit_free_bytes()));
+    const uint64_t free_bytes = smaller(machine_free_bytes(), smaller(group_free_bytes(), camber_address_space_left()));
     uint64_t unknown = UINT64_MAX;
     atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
 }
@@ -163,7 +163,7 @@ camber_status camber_budget_check_drivers(camber_context *context) {
     const long threads = asked ? strtol(asked, NULL, 10) : sysconf(_SC_NPROCESSORS_ONLN);
     const uint64_t wanted =
         (UINT64_C(640) << 20) + (uint64_t)(threads > 0 && threads < 4096 ? threads : 1) * (72 << 20);
-    const uint64_t left = limit_free_bytes();
+    const uint64_t left = camber_address_space_left();
     if (left >= wanted)
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_MEMORY,

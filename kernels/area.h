@@ -481,19 +481,18 @@ CAMBER_FN camber_real camber_edge_pieces_until(const camber_edge_pieces *p, floa
  * the left of the drawn columns changes the first of these. */
 CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row,
                                    const camber_cell_columns *at, camber_tile_rows where) {
-    const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS,
-              stop = CAMBER_LAST_COLUMN(where) + 1;
+    const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS;
     /* Where all columns are drawn, nothing is left or right of them. */
     const int has_all = CAMBER_OWN_SIDE == CAMBER_TILE_CELLS;
     const int first = has_all ? at->first : CAMBER_MORE(at->first, CAMBER_FIRST_COLUMN(where));
-    const int end = has_all ? past : CAMBER_LESS(past, stop),
+    const int end = has_all ? past : CAMBER_LESS(past, CAMBER_LAST_COLUMN(where) + 1),
               on = has_all ? past : CAMBER_MORE(past, CAMBER_FIRST_COLUMN(where));
     const float rise = camber_lane_of(&t->rise, k);
     camber_edge_pieces p[CAMBER_VECTORS];
     camber_real before[CAMBER_VECTORS], all[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_edge_pieces_of(t, k, row, v, p + v);
-        if (has_all || on <= stop)
+        if (has_all || on <= CAMBER_LAST_COLUMN(where) + 1)
             s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON][v] +=
                 CAMBER_ROUNDED_WORDS(p[v].height);
     }

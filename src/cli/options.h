@@ -132,6 +132,9 @@ int camber_options_check_serve(camber_options *options, char *message, size_t me
 
 enum { CAMBER_MAP_NAME_SIZE = 64 };
 
+/* A CSS px is 1/96 inch. */
+enum { CAMBER_CSS_PX_PER_INCH = 96 };
+
 /* Splits an input of serve of the form NAME=PATH, where NAME has letters, digits, - and _, and may end in /dark.
  * Returns the path. name_length receives 0 if there is no name: "./a=b.pbf" is a path. */
 const char *camber_options_split_input(const char *input, size_t *name_length);

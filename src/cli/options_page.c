@@ -12,7 +12,7 @@
 
 /* A margin of this part of the sheet's shorter side, unless --margin is given. */
 static const double MARGIN_SHARE = 0.04;
-static const double MM_PER_INCH = 25.4, CSS_PX_PER_INCH = 96.0, USUAL_DPI = 300.0;
+static const double MM_PER_INCH = 25.4, USUAL_DPI = 300.0;
 
 /* Parses WIDTHxHEIGHTmm. */
 static bool parse_sheet(const char *text, double mm[2]) {
@@ -58,8 +58,8 @@ static int check_sheet(const camber_option_reader *p, double mm[2]) {
     if (!options->paper && !sized)
         (void)camber_paper_find("A4", mm, mm + 1);
     if (sized) {
-        mm[0] = options->view.width * MM_PER_INCH / CSS_PX_PER_INCH;
-        mm[1] = options->view.height * MM_PER_INCH / CSS_PX_PER_INCH;
+        mm[0] = options->view.width * MM_PER_INCH / CAMBER_CSS_PX_PER_INCH;
+        mm[1] = options->view.height * MM_PER_INCH / CAMBER_CSS_PX_PER_INCH;
         if (!(fmin(mm[0], mm[1]) >= 10.0))
             return camber_options_refuse(p, "--size %ux%u: as a page these are %.1f x %.1f mm, and 10 mm are the least",
                                          options->view.width, options->view.height, mm[0], mm[1]);
@@ -83,7 +83,7 @@ static int set_size(const camber_option_reader *p, const double mm[2]) {
                                      "and the picture 2^31 in all",
                                      options->dpi, mm[0], mm[1], width, height);
     if (!is_given(options, "ratio"))
-        view->ratio = options->dpi / CSS_PX_PER_INCH;
+        view->ratio = options->dpi / CAMBER_CSS_PX_PER_INCH;
     view->width = (uint32_t)fmax(floor(width / view->ratio), 1.0);
     view->height = (uint32_t)fmax(floor(height / view->ratio), 1.0);
     options->paper_width_mm = mm[0];

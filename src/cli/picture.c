@@ -7,8 +7,6 @@
 #include <string.h>
 
 enum { SMALL_PX = 1 << 22 };
-static const double CSS_PX_PER_INCH = 96.0;
-
 typedef struct writer {
     camber_report *report;
     camber_context *context;
@@ -45,7 +43,7 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
 
 /* Returns the px per inch that a PNG tells. Without --dpi a CSS px is 1/96 inch, as in a PDF of the same picture. */
 static double dots_per_inch(const camber_options *options) {
-    return isnan(options->dpi) ? CSS_PX_PER_INCH * options->view.ratio : options->dpi;
+    return isnan(options->dpi) ? CAMBER_CSS_PX_PER_INCH * options->view.ratio : options->dpi;
 }
 
 static camber_status begin(writer *w, const camber_options *options, bool opaque, const char *attribution) {

@@ -228,7 +228,22 @@ static bool is_taken(const camber_features *features, const camber_schema *schem
     return schema->takes && schema->takes(style, one->geometry, features->layer_names[one->layer], &feature);
 }
 
-/* Whether the other style leaves the same classes to plain layers, and its symbol layers take the same classes. */
+static double rank_of(const camber_features *features, const camber_schema *schema, const camber_style *style,
+                      const camber_feature_class *one) {
+    const camber_feature_view feature = {.values = values_of(features, one),
+                                         .geometry_type = camber_geometry_type(one->geometry),
+                                         .id = one->id,
+                                         .all = one->all};
+    const bool line = one->geometry == CAMBER_GEOMETRY_LINE && !one->is_ends && schema->rank_ends;
+    return line ? schema->rank_ends(style, features->layer_names[one->layer], &feature) : CAMBER_NO_RANK;
+}
+
+double camber_features_rank_ends(const camber_features *features, uint32_t class_index) {
+    return rank_of(features, features->schema, features->style, &features->classes[class_index]);
+}
+
+/* Whether the other style leaves the same classes to plain layers, gives lines the same ends, and its symbol layers take
+ * the same classes. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
@@ -237,6 +252,8 @@ static bool takes_the_same(const camber_features *features, const camber_schema 
                 return false;
         } else if (one->unsorted && schema->wants_plain &&
                    one->plain == is_taken(features, schema, style, one, values_of(features, one)))
+            return false;
+        if (rank_of(features, schema, style, one) != camber_features_rank_ends(features, (uint32_t)i))
             return false;
     }
     return true;
@@ -459,7 +476,7 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
 }
 
 static uint64_t hash_class(const camber_feature_class *one, const camber_value *values, size_t count) {
-    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry << 1 | one->unsorted);
+    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry << 2 | (uint64_t)one->is_ends << 1 | one->unsorted);
     hash = camber_mix(hash_value(hash, &one->id), (uintptr_t)one->all);
     for (size_t i = 0; i < count; i++)
         hash = hash_value(hash, &values[i]);
@@ -511,7 +528,7 @@ static camber_status add_class(camber_features *features, const camber_feature_c
 
 static bool equal_classes(const camber_feature_class *a, const camber_feature_class *b) {
     return a->source == b->source && a->layer == b->layer && a->geometry == b->geometry && a->all == b->all &&
-           a->unsorted == b->unsorted && equal_values(&a->id, &b->id, 1);
+           a->unsorted == b->unsorted && a->is_ends == b->is_ends && equal_values(&a->id, &b->id, 1);
 }
 
 /* Whether layers of the style name the source layer of a class. The last answer is remembered. */

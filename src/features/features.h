@@ -21,7 +21,13 @@ typedef struct camber_feature_class {
     bool unsorted;           /* its file has no schema that says which features are roads, rivers or buildings */
     bool plain;              /* no ordinary layer draws it at any zoom, so plain layers do */
     bool labelled;           /* for a label's kind: a symbol layer takes it */
+    bool is_ends;            /* dots at the round ends of a class of lines (ends.c) */
 } camber_feature_class;
+
+/* Whether its features are counted with the features of a file: those of labels and of ends are there once more. */
+static inline bool camber_feature_class_counts(const camber_feature_class *class) {
+    return !class->is_ends && !camber_geometry_is_label(class->geometry);
+}
 
 struct camber_features {
     camber_context *context;
@@ -135,6 +141,8 @@ unsigned camber_features_kinds(const camber_features *features, bool unsorted);
 bool camber_features_reads_property(const camber_features *features, size_t property);
 /* Describes the features that are left out if only these kinds are read, in words that complete "left out what is". */
 const char *camber_features_left_out(unsigned kinds);
+/* Returns camber_schema.rank_ends of a class, CAMBER_NO_RANK if it has none. */
+double camber_features_rank_ends(const camber_features *features, uint32_t class_index);
 /* Whether features of this class are kept. Some kinds are read only because a class might be plain, and the kinds of
  * labels are read only because a symbol layer might take their features. */
 bool camber_features_draw_class(const camber_features *features, uint32_t class_index);
@@ -160,9 +168,9 @@ size_t camber_features_find_labels(const camber_features *features, size_t first
 /* Moves the features of labels after all other features from first_polyline on, so that labels do not change the lines
  * that are drawn. These polylines must not have importance yet. */
 camber_status camber_features_part_labels(camber_features *features, size_t first_polyline);
-/* Returns the number of features that are not labels. */
+/* Returns the number of features that are neither labels nor ends. */
 size_t camber_features_count_drawn(const camber_features *features);
-/* Counts features, polylines and points for the statistics, without labels. */
+/* Counts features, polylines and points for the statistics, without labels and ends. */
 void camber_features_count(camber_features *features);
 
 typedef enum camber_merge_rule {
@@ -171,8 +179,11 @@ typedef enum camber_merge_rule {
     CAMBER_MERGE_STRAIGHT, /* at points at which two lines continue almost straight, whatever else meets there */
 } camber_merge_rule;
 
-/* If merges is set, merges the lines (not the areas) from first_polyline on. Then computes the importance of the
- * points, and drops lines outside the set's region. It measures the time that both steps take. If the style depends on
+/* Adds dots at the ends, from first_polyline on, that are round in layers which tuck their ends (ends.c). */
+camber_status camber_features_add_ends(camber_features *features, size_t first_polyline);
+
+/* If merges is set, merges the lines (not the areas) from first_polyline on. Then adds their ends, computes the
+ * importance of the points, and drops lines outside the set's region. It measures the time that both steps take. If the style depends on
  * the direction of lines, ANY becomes DIRECTED. Lines of labels are always merged. Their directions count only if icons
  * show them. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,

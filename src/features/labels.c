@@ -130,22 +130,25 @@ camber_status camber_features_part_labels(camber_features *features, size_t firs
     return fits ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
+static bool counts(const camber_features *features, size_t feature) {
+    return camber_feature_class_counts(&features->classes[features->feature_class[feature]]);
+}
+
 size_t camber_features_count_drawn(const camber_features *features) {
-    size_t count = features->feature_count;
-    for (size_t i = 0; features->wants_labels && i < features->feature_count; i++)
-        count -= is_label(features, i);
+    size_t count = 0;
+    for (size_t i = 0; i < features->feature_count; i++)
+        count += counts(features, i);
     return count;
 }
 
 void camber_features_count(camber_features *features) {
     camber_features_stats *stats = &features->stats;
     stats->features = camber_features_count_drawn(features);
-    stats->polylines = features->polyline_count;
-    stats->points = features->point_count;
-    for (size_t p = 0; features->wants_labels && p < features->polyline_count; p++) {
-        if (!camber_geometry_is_label(camber_features_kind(features, p)))
+    stats->polylines = stats->points = 0;
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        if (!counts(features, features->polyline_feature[p]))
             continue;
-        stats->polylines--;
-        stats->points -= features->offsets[p + 1] - features->offsets[p];
+        stats->polylines++;
+        stats->points += features->offsets[p + 1] - features->offsets[p];
     }
 }

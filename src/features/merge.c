@@ -359,9 +359,13 @@ camber_status camber_features_merge_and_weigh(camber_features *features, size_t 
     const double start_ms = camber_now_ms();
     const bool directed = rule == CAMBER_MERGE_ANY && features->schema->directed;
     features->changes++;
-    camber_status status = camber_features_part_labels(features, first_polyline);
-    if (status == CAMBER_OK && merges)
+    camber_status status = CAMBER_OK;
+    if (merges)
         status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);
+    if (status == CAMBER_OK)
+        status = camber_features_add_ends(features, first_polyline);
+    if (status == CAMBER_OK)
+        status = camber_features_part_labels(features, first_polyline);
     if (status == CAMBER_OK && features->wants_labels)
         status = merge_labels(features, first_polyline, rule);
     camber_features_shrink(features);

@@ -66,6 +66,9 @@ typedef struct camber_feature_view {
     const camber_value *all;    /* an object with all properties, if the style needs them. NULL: none */
 } camber_feature_view;
 
+/* The rank of a line whose ends are not tucked. Ranks are 0 or more. */
+#define CAMBER_NO_RANK (-1.0)
+
 /* The source of features from an input file, which no layer of the style names. */
 #define CAMBER_NO_SOURCE UINT32_MAX
 
@@ -103,6 +106,10 @@ typedef struct camber_schema {
      * kind: whether a symbol layer takes the feature. NULL: no layer does. */
     bool (*takes)(const camber_style *style, camber_geometry_kind kind, const char *source_layer,
                   const camber_feature_view *feature);
+    /* Returns the rank of a line among those that layers draw which tuck their ends: the later such a layer is, and
+     * within a layer the larger the sort key, the higher. CAMBER_NO_RANK: no such layer draws it. NULL: the style has
+     * no such layer. */
+    double (*rank_ends)(const camber_style *style, const char *source_layer, const camber_feature_view *feature);
 } camber_schema;
 
 /* Whether a layer of the style names this source layer, so that the style knows what is in it. */

@@ -43,7 +43,8 @@ static void say_read(sentence *s, const camber_features *features) {
     size_t kinds[CAMBER_GEOMETRY_KINDS] = {0};
     bool any = false;
     for (size_t i = 0; i < features->feature_count; i++)
-        kinds[features->classes[features->feature_class[i]].geometry]++;
+        kinds[features->classes[features->feature_class[i]].geometry] +=
+            !features->classes[features->feature_class[i]].is_ends;
     const size_t outlines = kinds[CAMBER_GEOMETRY_POLYGON], areas = kinds[CAMBER_GEOMETRY_AREA];
     say_count(s, most(kinds[CAMBER_GEOMETRY_LINE], kinds[CAMBER_GEOMETRY_LABEL_LINE]), "line", &any);
     say_count(s, most(most(areas, outlines), kinds[CAMBER_GEOMETRY_LABEL_AREA]), "area", &any);

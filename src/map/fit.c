@@ -146,6 +146,8 @@ static camber_status bounds_of(const camber_features *features, const camber_vie
     for (size_t i = 0; i < count; i++) {
         const uint32_t polyline = plan->all.entries[i].polyline;
         const bool cuts = polyline >= features->extract_first && polyline < features->extract_end;
+        if (features->classes[features->feature_class[features->polyline_feature[polyline]]].is_ends)
+            continue;
         const two_bounds one = bounds_of_polyline(features, polyline, view);
         unite(cuts ? &extract.plain : &others.plain, one.plain);
         unite(cuts ? &extract.moved : &others.moved, one.moved);

@@ -32,8 +32,12 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
 }
 
 /* Areas are filled. The outlines of polygons are also lines. Points are drawn only by circles, and by plain layers as
- * dots, which are round caps. Circles are drawn at all points of any geometry. */
-static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, camber_geometry_kind kind) {
+ * dots, which are round caps. Circles are drawn at all points of any geometry, and the ends of lines by layers that tuck
+ * them. */
+static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, const camber_feature_class *class) {
+    const camber_geometry_kind kind = class->geometry;
+    if (class->is_ends)
+        return layer->tucks && part <= CAMBER_PLAN_BORDER;
     if (part == CAMBER_PLAN_AREA)
         return kind == CAMBER_GEOMETRY_AREA;
     if (part == CAMBER_PLAN_OUTLINE)
@@ -69,8 +73,8 @@ bool camber_plan_labels(const camber_features *features, const camber_style_laye
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class) {
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
-    const bool fits = takes_kind(layer, part_of(layer), class->geometry) ||
-                      (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class->geometry));
+    const bool fits = takes_kind(layer, part_of(layer), class) ||
+                      (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class));
     if (layer->kind == CAMBER_LAYER_BACKGROUND || layer->kind == CAMBER_LAYER_SYMBOL || !fits ||
         !camber_plan_comes_to(features, layer, class))
         return false;
@@ -81,7 +85,7 @@ bool camber_plan_takes(const camber_features *features, const camber_style_layer
 static bool draws_class(const camber_features *features, const camber_plan_layer *drawn, const camber_view *view,
                         const camber_feature_class *class) {
     const camber_style_layer *layer = drawn->look.layer;
-    if (!takes_kind(layer, drawn->part, class->geometry) || !camber_plan_comes_to(features, layer, class))
+    if (!takes_kind(layer, drawn->part, class) || !camber_plan_comes_to(features, layer, class))
         return false;
     const camber_feature_view feature = camber_plan_view_of(features, class);
     return camber_style_layer_matches(layer, camber_view_style_zoom(view), &feature);
@@ -111,7 +115,7 @@ static bool shares_polylines(const camber_plan_layer *one, const camber_plan_lay
     const camber_style_layer *a = one->look.layer, *b = other->look.layer;
     const bool same_part =
         one->part == other->part || (one->part <= CAMBER_PLAN_BORDER && other->part <= CAMBER_PLAN_BORDER);
-    return same_part && a->plain == b->plain && a->source_index == b->source_index &&
+    return same_part && a->plain == b->plain && a->tucks == b->tucks && a->source_index == b->source_index &&
            same_text(a->source_layer, b->source_layer) && same_text(a->filter_key, b->filter_key) &&
            camber_layer_look_shares(&one->look, &other->look);
 }
@@ -222,6 +226,7 @@ typedef struct row_table {
     size_t slot_count;       /* a power of two */
     bool failed;             /* out of memory for dashes or patterns */
     bool of_stroke;          /* for circles: whether this dot is the stroke */
+    bool is_ends;            /* for lines: whether the class is of their ends */
 } row_table;
 
 /* By set, class and dot: the row, or CAMBER_NO_ROW if the set does not draw it, and the key if the set is sorted. */
@@ -437,11 +442,12 @@ static void put_area(camber_plan *plan, const camber_plan_layer *layer, const ca
     }
 }
 
-/* Makes the stroke of a paint. A miter limit of 1 or less bevels every turn; 0 would mean the default. */
-static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
+/* Makes the stroke of a paint. A miter limit of 1 or less bevels every turn; 0 would mean the default. tucks: whether
+ * round caps are dots of their own. */
+static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio, bool tucks) {
     return (camber_stroke){
         .join = paint->join,
-        .cap = paint->cap,
+        .cap = tucks && paint->cap == CAMBER_CAP_ROUND ? CAMBER_CAP_BUTT : paint->cap,
         .miter_limit = (float)fmin(fmax(paint->miter_limit, 1.0), 1e6),
         .offset_px = (float)fmin(fmax(paint->offset * ratio, -WIDEST_PX), WIDEST_PX),
         .round_limit = paint->join == CAMBER_JOIN_ROUND ? (float)fmin(fmax(paint->round_limit, 0.0), 1e6) : 0.0f};
@@ -512,6 +518,8 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
         camber_paint *made = table->tuple + layer->slot;
         const pattern_choice pattern = choose_pattern(plan, layer, view, feature, &paint);
+        if (table->is_ends && paint.cap != CAMBER_CAP_ROUND)
+            paint.width = 0.0;
         put_paint(layer, &paint, view->ratio, made);
         if (pattern.patterned)
             put_pattern(layer, &pattern, made);
@@ -521,7 +529,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
             *failed |= !made->dash;
         }
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
-        table->stroke = stroke_of(&paint, view->ratio);
+        table->stroke = stroke_of(&paint, view->ratio, layer->look.layer->tucks && !table->is_ends);
         table->stroke.width_px = width_px;
         table->stroke.round_limit = round_limit_that_shows(&table->stroke);
         *key = paint.sort_key;
@@ -637,6 +645,7 @@ static camber_status match_set(const camber_features *features, const camber_vie
             continue;
         const camber_feature_view feature = camber_plan_view_of(features, class);
         plan->has_corners |= camber_plan_is_circles(plan, set) && class->geometry != CAMBER_GEOMETRY_POINT;
+        table->is_ends = class->is_ends;
         for (size_t dot = first_dot; dot <= last && status == CAMBER_OK; dot++) {
             table->of_stroke = dot < last;
             status = match_dot(view, plan, set, &feature, at + dot, rows);
@@ -845,7 +854,7 @@ static camber_status list_all(const camber_features *features, camber_plan *plan
     for (size_t p = 0; p < features->polyline_count; p++) {
         const uint32_t class = features->feature_class[features->polyline_feature[p]];
         if (by_class->first[class] == by_class->first[class + 1] &&
-            !camber_geometry_is_label(features->classes[class].geometry))
+            camber_feature_class_counts(features->classes + class))
             plan->undrawn += features->feature_counts[p];
     }
     return status;

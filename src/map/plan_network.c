@@ -197,7 +197,8 @@ static void count_set(const camber_features *features, const camber_plan_network
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
     for (size_t i = first; i < end; i++) {
         const uint32_t polyline = geometry->entries[seen->lines.entries[i]].polyline;
-        if (polyline == before)
+        const uint32_t class = features->feature_class[features->polyline_feature[polyline]];
+        if (polyline == before || features->classes[class].is_ends)
             continue;
         before = polyline;
         seen->points_in += camber_features_whole_count(features, polyline);

@@ -129,12 +129,11 @@ static bool fail_metadata(camber_document *d, const char *key, const char *messa
     return camber_document_continues(d, depth);
 }
 
-/* Reads the metadata {"camber:plain": true}. */
-static bool read_plain(camber_document *d, const json_t *json, camber_style_layer *layer) {
-    const json_t *plain = json_object_get(json_object_get(json, "metadata"), "camber:plain");
-    layer->plain = json_is_true(plain);
-    return !plain || json_is_boolean(plain) ||
-           fail_metadata(d, "camber:plain", "expected true or false; write one of them");
+/* Reads metadata such as {"camber:plain": true}. */
+static bool read_flag(camber_document *d, const json_t *json, const char *key, bool *flag) {
+    const json_t *value = json_object_get(json_object_get(json, "metadata"), key);
+    *flag = json_is_true(value);
+    return !value || json_is_boolean(value) || fail_metadata(d, key, "expected true or false; write one of them");
 }
 
 static void warn_overlap(camber_document *d, const char *key, camber_layer_kind kind) {
@@ -181,7 +180,8 @@ static bool read_repeat(camber_document *d, const json_t *json, camber_style_lay
 }
 
 static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
-    return read_overlap(d, json, layer) && read_plain(d, json, layer) && read_repeat(d, json, layer);
+    return read_overlap(d, json, layer) && read_flag(d, json, "camber:plain", &layer->plain) &&
+           read_flag(d, json, "camber:tuck", &layer->tucks) && read_repeat(d, json, layer);
 }
 
 /* ---- Filters ---- */

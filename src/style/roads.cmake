@@ -223,9 +223,9 @@ macro(append_layer out template)
 endmacro()
 
 set(road_template [=[
-    {"id": "@ID@", "type": "line",@HEAD@
+    {"id": "@ID@", "type": "line",@HEAD@@TUCK@
      "filter": @FILTER@,
-     "layout": {"line-cap": @CAP@, "line-join": "round", "line-round-limit": 1, "line-sort-key": @INDEX@},
+     "layout": {"line-cap": "round", "line-join": "round", "line-round-limit": 1, "line-sort-key": @KEY@},
      "paint": {"line-color": @COLOR@,
                "line-width": @WIDTH@}}]=])
 set(way_template [=[
@@ -245,21 +245,22 @@ set(bed_template [=[
 # Areas, such as pedestrian squares, get no road around them; the style city fills them.
 set(not_area "[\"!=\", [\"geometry-type\"], \"Polygon\"]")
 
-# Appends the casings and the fills of a level. The casing of a bridge ends where the bridge does. On the ground, roads
-# from tertiary ones up end where the next way begins: it is a lesser road or a tunnel, which is below and has a round end,
-# or one of several roads of the class, which fill the corner together. Everything else overlaps its neighbour, including
-# the fill of a bridge; otherwise its casing would show through the smooth edge of its end.
+# Appends the casings and the fills of a level. Ends are tucked: a road ends flat where it goes on as a lesser road, or on
+# a lower level. The fill of a bridge overlaps its neighbour; otherwise its casing would show through the smooth edge of
+# its end. Roads in a cutting, of a layer below 0, are below the other roads of the ground.
 macro(append_roads out id level test)
   set(FILTER "[\"all\", ${not_area}, ${is_road}, ${test}]")
   foreach(part IN ITEMS casing fill)
     set(ID "${id}-${part}")
     set(COLOR "${color_${level}_${part}}")
     set(WIDTH "${width_${level}_${part}}")
-    set(CAP "\"round\"")
-    if("${level}-${part}" STREQUAL "bridge-casing")
-      set(CAP "\"butt\"")
-    elseif("${level}" STREQUAL "ground")
-      set(CAP "[\"case\", [\">=\", ${INDEX}, 7], \"butt\", \"round\"]")
+    set(TUCK "\n     \"metadata\": {\"camber:tuck\": true},")
+    if("${level}-${part}" STREQUAL "bridge-fill")
+      set(TUCK "")
+    endif()
+    set(KEY "${INDEX}")
+    if("${level}" STREQUAL "ground" AND road_layers GREATER 1)
+      set(KEY "[\"-\", ${INDEX}, [\"case\", [\"<\", [\"to-number\", [\"get\", \"layer\"], 0], 0], 12, 0]]")
     endif()
     append_layer(${out} "${road_template}")
   endforeach()
@@ -315,6 +316,7 @@ macro(prepare_roads theme schema)
   set(width_tunnel_fill "${width_ground_fill}")
   set(width_tunnel_casing "${width_ground_casing}")
   set(width_bridge_fill "${width_ground_fill}")
+  set(road_layers "${${schema}_levels}")
   road_colors(${theme} ${schema})
 
   set(values "")

@@ -5,6 +5,7 @@
 #include "features/features.h"
 #include "style/symbol.h"
 
+#include <math.h>
 #include <string.h>
 
 unsigned camber_style_layer_kinds(camber_layer_kind kind) {
@@ -88,10 +89,29 @@ static bool takes(const camber_style *style, camber_geometry_kind kind, const ch
     return false;
 }
 
+/* Sort keys beyond this are cut off, so that layers do not mix. */
+static const double KEYS_A_LAYER = 4096.0;
+
+static double rank_ends(const camber_style *style, const char *source_layer, const camber_feature_view *feature) {
+    for (size_t i = style->layer_count; i-- > 0;) {
+        const camber_style_layer *layer = style->layers + i;
+        if (layer->kind != CAMBER_LAYER_LINE || !layer->tucks || (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
+            !camber_style_layer_takes(layer, feature))
+            continue;
+        const double key = camber_style_layer_paint(layer, layer->min_zoom, feature).sort_key;
+        return 2.0 * KEYS_A_LAYER * (double)(i + 1) + fmin(fmax(key, -KEYS_A_LAYER), KEYS_A_LAYER);
+    }
+    return CAMBER_NO_RANK;
+}
+
 void camber_style_describe_layers(camber_style *style) {
     find_wants(style, &style->schema);
     list_source_layers(style, &style->schema);
     style->schema.takes = takes;
+    style->schema.rank_ends = NULL;
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (style->layers[i].tucks)
+            style->schema.rank_ends = rank_ends;
 }
 
 camber_status camber_features_create(camber_context *context, const camber_style *style, camber_features **features) {

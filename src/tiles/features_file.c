@@ -23,7 +23,7 @@
 #include <unistd.h>
 
 enum { BLOCK_POLYLINES = 1 << 14 };
-#define MAGIC UINT64_C(0x33746165666d6163)
+#define MAGIC UINT64_C(0x34746165666d6163)
 
 typedef struct header {
     uint64_t magic, input, json_bytes, feature_count, polyline_count, point_count, has_progress;
@@ -100,8 +100,8 @@ static camber_status take_value(camber_features *features, const json_t *json, c
 /* ---- Classes ---- */
 
 static bool append_class(json_t *to, const camber_features *features, const camber_feature_class *class) {
-    json_t *json = json_pack("[I,I,I,b]", (json_int_t) class->source, (json_int_t) class->layer,
-                             (json_int_t) class->geometry, class->unsorted);
+    json_t *json = json_pack("[I,I,I,b,b]", (json_int_t) class->source, (json_int_t) class->layer,
+                             (json_int_t) class->geometry, class->unsorted, class->is_ends);
     const camber_value none = {.type = CAMBER_VALUE_NULL};
     bool good = json && append_value(json, &class->id) && append_value(json, class->all ? class->all : &none);
     for (size_t i = 0; i < features->schema->property_count && good; i++)
@@ -127,21 +127,22 @@ static json_t *make_json(const camber_features *features) {
 }
 
 static camber_status take_class(camber_features *features, const json_t *json, camber_value *values, size_t number) {
-    enum { BEFORE = 6 };
+    enum { BEFORE = 7 };
     const size_t count = features->schema->property_count;
     const json_int_t kind = json_integer_value(json_array_get(json, 2));
     camber_feature_class class = {.layer = (uint32_t)json_integer_value(json_array_get(json, 1)),
                                   .geometry = (camber_geometry_kind)kind,
-                                  .unsorted = json_is_true(json_array_get(json, 3))};
+                                  .unsorted = json_is_true(json_array_get(json, 3)),
+                                  .is_ends = json_is_true(json_array_get(json, 4))};
     camber_value all;
     uint32_t index = 0;
     if (json_array_size(json) != BEFORE + count || class.layer >= features->layer_count || kind < 0 ||
         kind >= CAMBER_GEOMETRY_KINDS)
         return CAMBER_ERROR_INPUT;
-    camber_status status = take_value(features, json_array_get(json, 4), &class.id);
+    camber_status status = take_value(features, json_array_get(json, 5), &class.id);
     if (status == CAMBER_OK)
-        status = take_value(features, json_array_get(json, 5), &all);
-    const json_t *object = json_array_get(json_array_get(json, 5), 0);
+        status = take_value(features, json_array_get(json, 6), &all);
+    const json_t *object = json_array_get(json_array_get(json, 6), 0);
     if (status == CAMBER_OK && object)
         status = camber_features_intern_json(features, object, &class.all);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)

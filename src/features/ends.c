@@ -1,0 +1,196 @@
+/* Finds which ends of lines are round, in layers that tuck the ends of their lines.
+ *
+ * Input: a set whose lines are merged. Output: dots, in classes of their own, for the ends that are round; in such
+ * layers the lines themselves end flat. The main idea: the style ranks the lines in the order in which they are drawn.
+ * An end is flat if the line goes on as lines that are below it, because a round end would lie on these:
+ *
+ *      ________                        ________                          ________
+ *              |------   below                 |  above                          ) nothing, or an equal line that
+ *      ________|------   it: flat      ________|)------  it: round       ________) also ends here: round
+ *
+ * No dot is needed where a line passes that is as high or higher, because it covers the end. */
+#include "base/maths.h"
+#include "features/features.h"
+
+#include <string.h>
+
+#define NONE UINT32_MAX
+
+/* A point at which lines end. */
+typedef struct end_node {
+    const double *at;
+    double top;      /* the highest rank of the lines that touch it */
+    uint32_t dots;   /* the first of its dots; NONE: it has none yet */
+    unsigned touches; /* by lines of any rank, counted up to 2 */
+    unsigned at_top;  /* by lines of the highest rank, counted up to 2 */
+    bool passes;     /* a line of the highest rank does not end here */
+} end_node;
+
+typedef struct end_dot {
+    double at[2];
+    uint32_t class_index; /* of the line */
+    uint32_t next;        /* the node's next dot, or NONE */
+} end_dot;
+
+typedef struct finder {
+    camber_features *features;
+    size_t first_polyline, polyline_end;
+    double *ranks;   /* by class */
+    end_node *nodes;
+    uint32_t *slots; /* hash table: a node + 1; 0: free. Its size is a power of two, and at most half are in use */
+    size_t node_count, slot_count;
+    end_dot *dots;
+    size_t dot_count, dot_capacity;
+} finder;
+
+typedef struct line {
+    const double *points;
+    size_t count;
+    uint32_t class_index;
+    double rank;
+    bool open; /* it has two ends */
+} line;
+
+static line line_at(const finder *f, size_t polyline) {
+    const camber_features *features = f->features;
+    const size_t first = features->offsets[polyline];
+    line l = {.points = features->points + 2 * first,
+              .count = features->offsets[polyline + 1] - first,
+              .class_index = features->feature_class[features->polyline_feature[polyline]]};
+    l.rank = f->ranks[l.class_index];
+    l.open = l.count > 1 && memcmp(l.points, l.points + 2 * (l.count - 1), 2 * sizeof *l.points) != 0;
+    return l;
+}
+
+/* Returns the slot of the node at a point, or the free slot at which it would be. */
+static uint32_t *slot_of(const finder *f, const double *at) {
+    size_t slot = (size_t)camber_mix_point(0, at) & (f->slot_count - 1);
+    while (f->slots[slot] && memcmp(f->nodes[f->slots[slot] - 1].at, at, 2 * sizeof *at) != 0)
+        slot = (slot + 1) & (f->slot_count - 1);
+    return f->slots + slot;
+}
+
+static void add_nodes(finder *f) {
+    for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
+        const line l = line_at(f, p);
+        for (int last = 0; last < 2 && l.open && l.rank != CAMBER_NO_RANK; last++) {
+            const double *at = l.points + (last ? 2 * (l.count - 1) : 0);
+            uint32_t *slot = slot_of(f, at);
+            if (*slot)
+                continue;
+            f->nodes[f->node_count] = (end_node){.at = at, .top = CAMBER_NO_RANK, .dots = NONE};
+            *slot = (uint32_t)++f->node_count;
+        }
+    }
+}
+
+static void touch(end_node *node, double rank, bool ends) {
+    if (rank > node->top) {
+        node->top = rank;
+        node->at_top = 0;
+        node->passes = false;
+    }
+    node->touches += node->touches < 2;
+    if (rank < node->top)
+        return;
+    node->at_top += node->at_top < 2;
+    node->passes |= !ends;
+}
+
+static void touch_nodes(finder *f) {
+    for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
+        const line l = line_at(f, p);
+        for (size_t i = l.open ? 0 : 1; i < l.count && l.rank != CAMBER_NO_RANK; i++) {
+            const uint32_t slot = *slot_of(f, l.points + 2 * i);
+            if (slot)
+                touch(f->nodes + slot - 1, l.rank, l.open && (i == 0 || i + 1 == l.count));
+        }
+    }
+}
+
+static bool is_round(const end_node *node, double rank) {
+    const bool alone = node->touches < 2, highest = rank >= node->top && node->at_top < 2;
+    return alone || (!highest && !node->passes);
+}
+
+/* Adds a dot, unless a line of the same class has it. */
+static bool add_dot(finder *f, end_node *node, uint32_t class_index) {
+    for (uint32_t i = node->dots; i != NONE; i = f->dots[i].next)
+        if (f->dots[i].class_index == class_index)
+            return true;
+    if (!camber_grow(f->features->context, &f->dots, &f->dot_capacity, f->dot_count + 1, sizeof *f->dots))
+        return false;
+    f->dots[f->dot_count] = (end_dot){{node->at[0], node->at[1]}, class_index, node->dots};
+    node->dots = (uint32_t)f->dot_count++;
+    return true;
+}
+
+static bool find_dots(finder *f) {
+    for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
+        const line l = line_at(f, p);
+        for (int last = 0; last < 2 && l.open && l.rank != CAMBER_NO_RANK; last++) {
+            end_node *node = f->nodes + *slot_of(f, l.points + (last ? 2 * (l.count - 1) : 0)) - 1;
+            if (is_round(node, l.rank) && !add_dot(f, node, l.class_index))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Appends the dots to the set, which moves the points that the nodes refer to. */
+static camber_status append_dots(const finder *f) {
+    camber_features *features = f->features;
+    const uint32_t source = features->source;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < f->dot_count && status == CAMBER_OK; i++) {
+        camber_feature_class wanted = features->classes[f->dots[i].class_index];
+        uint32_t class_index;
+        wanted.is_ends = true;
+        features->source = wanted.source;
+        status = camber_features_find_class_of(features, &wanted, features->values + wanted.first_value, &class_index);
+        if (status == CAMBER_OK)
+            status = camber_features_add_feature(features, class_index);
+        if (status == CAMBER_OK)
+            status = camber_features_add_polyline(features, f->dots[i].at, 1);
+    }
+    features->source = source;
+    return status;
+}
+
+/* Ranks the classes, and counts the ends of ranked lines. */
+static size_t rank_classes(finder *f) {
+    size_t ends = 0;
+    for (size_t c = 0; c < f->features->class_count; c++)
+        f->ranks[c] = camber_features_rank_ends(f->features, (uint32_t)c);
+    for (size_t p = f->first_polyline; p < f->polyline_end; p++)
+        ends += line_at(f, p).rank != CAMBER_NO_RANK ? 2 : 0;
+    return ends;
+}
+
+camber_status camber_features_add_ends(camber_features *features, size_t first_polyline) {
+    camber_context *context = features->context;
+    finder f = {.features = features,
+                .first_polyline = first_polyline,
+                .polyline_end = features->polyline_count,
+                .slot_count = 16};
+    if (!features->schema->rank_ends || first_polyline == features->polyline_count)
+        return CAMBER_OK;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    if (!(f.ranks = camber_alloc(context, features->class_count, sizeof *f.ranks)))
+        return status;
+    const size_t end_count = rank_classes(&f);
+    while (f.slot_count < 2 * end_count)
+        f.slot_count *= 2;
+    if ((f.nodes = camber_alloc(context, end_count, sizeof *f.nodes)) &&
+        (f.slots = camber_alloc_zero(context, f.slot_count, sizeof *f.slots))) {
+        add_nodes(&f);
+        touch_nodes(&f);
+        if (find_dots(&f))
+            status = append_dots(&f);
+    }
+    camber_free(context, f.dots);
+    camber_free(context, f.slots);
+    camber_free(context, f.nodes);
+    camber_free(context, f.ranks);
+    return status;
+}

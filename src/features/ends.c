@@ -18,16 +18,16 @@
 
 /* A point at which lines end. */
 typedef struct end_node {
-    const double *at;
-    double top;      /* the highest rank of the lines that touch it */
-    uint32_t dots;   /* the first of its dots; NONE: it has none yet */
+    double at[2];
+    double top;       /* the highest rank of the lines that touch it */
+    uint32_t dots;    /* the first of its dots; NONE: it has none yet */
     unsigned touches; /* by lines of any rank, counted up to 2 */
     unsigned at_top;  /* by lines of the highest rank, counted up to 2 */
-    bool passes;     /* a line of the highest rank does not end here */
+    bool passes;      /* a line of the highest rank does not end here */
 } end_node;
 
 typedef struct end_dot {
-    double at[2];
+    uint32_t node;
     uint32_t class_index; /* of the line */
     uint32_t next;        /* the node's next dot, or NONE */
 } end_dot;
@@ -35,8 +35,10 @@ typedef struct end_dot {
 typedef struct finder {
     camber_features *features;
     size_t first_polyline, polyline_end;
-    double *ranks;   /* by class */
+    double *ranks;       /* by class */
+    uint32_t *dot_class; /* by class: the class of its dots; NONE: not known yet */
     end_node *nodes;
+    uint32_t *ends;  /* the nodes of the two ends of each open line that has a rank, in order */
     uint32_t *slots; /* hash table: a node + 1; 0: free. Its size is a power of two, and at most half are in use */
     size_t node_count, slot_count;
     end_dot *dots;
@@ -48,7 +50,7 @@ typedef struct line {
     size_t count;
     uint32_t class_index;
     double rank;
-    bool open; /* it has two ends */
+    bool open; /* it has a rank and two ends */
 } line;
 
 static line line_at(const finder *f, size_t polyline) {
@@ -58,7 +60,8 @@ static line line_at(const finder *f, size_t polyline) {
               .count = features->offsets[polyline + 1] - first,
               .class_index = features->feature_class[features->polyline_feature[polyline]]};
     l.rank = f->ranks[l.class_index];
-    l.open = l.count > 1 && memcmp(l.points, l.points + 2 * (l.count - 1), 2 * sizeof *l.points) != 0;
+    l.open = l.rank != CAMBER_NO_RANK && l.count > 1 &&
+             memcmp(l.points, l.points + 2 * (l.count - 1), 2 * sizeof *l.points) != 0;
     return l;
 }
 
@@ -70,18 +73,13 @@ static uint32_t *slot_of(const finder *f, const double *at) {
     return f->slots + slot;
 }
 
-static void add_nodes(finder *f) {
-    for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
-        const line l = line_at(f, p);
-        for (int last = 0; last < 2 && l.open && l.rank != CAMBER_NO_RANK; last++) {
-            const double *at = l.points + (last ? 2 * (l.count - 1) : 0);
-            uint32_t *slot = slot_of(f, at);
-            if (*slot)
-                continue;
-            f->nodes[f->node_count] = (end_node){.at = at, .top = CAMBER_NO_RANK, .dots = NONE};
-            *slot = (uint32_t)++f->node_count;
-        }
+static uint32_t add_node(finder *f, const double *at) {
+    uint32_t *slot = slot_of(f, at);
+    if (!*slot) {
+        f->nodes[f->node_count] = (end_node){.at = {at[0], at[1]}, .top = CAMBER_NO_RANK, .dots = NONE};
+        *slot = (uint32_t)++f->node_count;
     }
+    return *slot - 1;
 }
 
 static void touch(end_node *node, double rank, bool ends) {
@@ -97,13 +95,25 @@ static void touch(end_node *node, double rank, bool ends) {
     node->passes |= !ends;
 }
 
-static void touch_nodes(finder *f) {
+static void add_nodes(finder *f) {
+    uint32_t *end = f->ends;
     for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
         const line l = line_at(f, p);
-        for (size_t i = l.open ? 0 : 1; i < l.count && l.rank != CAMBER_NO_RANK; i++) {
+        for (int last = 0; last < 2 && l.open; last++) {
+            *end = add_node(f, l.points + (last ? 2 * (l.count - 1) : 0));
+            touch(f->nodes + *end++, l.rank, true);
+        }
+    }
+}
+
+/* Tells the nodes of lines that pass. A ring has none of its points twice. */
+static void pass_nodes(finder *f) {
+    for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
+        const line l = line_at(f, p);
+        for (size_t i = 1; l.rank != CAMBER_NO_RANK && i + l.open < l.count; i++) {
             const uint32_t slot = *slot_of(f, l.points + 2 * i);
             if (slot)
-                touch(f->nodes + slot - 1, l.rank, l.open && (i == 0 || i + 1 == l.count));
+                touch(f->nodes + slot - 1, l.rank, false);
         }
     }
 }
@@ -114,56 +124,67 @@ static bool is_round(const end_node *node, double rank) {
 }
 
 /* Adds a dot, unless a line of the same class has it. */
-static bool add_dot(finder *f, end_node *node, uint32_t class_index) {
-    for (uint32_t i = node->dots; i != NONE; i = f->dots[i].next)
+static bool add_dot(finder *f, uint32_t node, uint32_t class_index) {
+    for (uint32_t i = f->nodes[node].dots; i != NONE; i = f->dots[i].next)
         if (f->dots[i].class_index == class_index)
             return true;
     if (!camber_grow(f->features->context, &f->dots, &f->dot_capacity, f->dot_count + 1, sizeof *f->dots))
         return false;
-    f->dots[f->dot_count] = (end_dot){{node->at[0], node->at[1]}, class_index, node->dots};
-    node->dots = (uint32_t)f->dot_count++;
+    f->dots[f->dot_count] = (end_dot){node, class_index, f->nodes[node].dots};
+    f->nodes[node].dots = (uint32_t)f->dot_count++;
     return true;
 }
 
 static bool find_dots(finder *f) {
+    const uint32_t *end = f->ends;
     for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
         const line l = line_at(f, p);
-        for (int last = 0; last < 2 && l.open && l.rank != CAMBER_NO_RANK; last++) {
-            end_node *node = f->nodes + *slot_of(f, l.points + (last ? 2 * (l.count - 1) : 0)) - 1;
-            if (is_round(node, l.rank) && !add_dot(f, node, l.class_index))
+        for (int last = 0; last < 2 && l.open; last++, end++)
+            if (is_round(f->nodes + *end, l.rank) && !add_dot(f, *end, l.class_index))
                 return false;
-        }
     }
     return true;
 }
 
-/* Appends the dots to the set, which moves the points that the nodes refer to. */
-static camber_status append_dots(const finder *f) {
+/* Finds the class of a line's dots. */
+static camber_status find_class(const finder *f, uint32_t class_index, uint32_t *dot_class) {
     camber_features *features = f->features;
     const uint32_t source = features->source;
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < f->dot_count && status == CAMBER_OK; i++) {
-        camber_feature_class wanted = features->classes[f->dots[i].class_index];
-        uint32_t class_index;
-        wanted.is_ends = true;
-        features->source = wanted.source;
-        status = camber_features_find_class_of(features, &wanted, features->values + wanted.first_value, &class_index);
-        if (status == CAMBER_OK)
-            status = camber_features_add_feature(features, class_index);
-        if (status == CAMBER_OK)
-            status = camber_features_add_polyline(features, f->dots[i].at, 1);
-    }
+    camber_feature_class wanted = features->classes[class_index];
+    if (*dot_class != NONE)
+        return CAMBER_OK;
+    wanted.is_ends = true;
+    features->source = wanted.source;
+    const camber_status status =
+        camber_features_find_class_of(features, &wanted, features->values + wanted.first_value, dot_class);
     features->source = source;
     return status;
 }
 
-/* Ranks the classes, and counts the ends of ranked lines. */
+static camber_status append_dots(const finder *f) {
+    camber_features *features = f->features;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < f->dot_count && status == CAMBER_OK; i++) {
+        const end_dot *dot = f->dots + i;
+        uint32_t *dot_class = f->dot_class + dot->class_index;
+        status = find_class(f, dot->class_index, dot_class);
+        if (status == CAMBER_OK)
+            status = camber_features_add_feature(features, *dot_class);
+        if (status == CAMBER_OK)
+            status = camber_features_add_polyline(features, f->nodes[dot->node].at, 1);
+    }
+    return status;
+}
+
+/* Ranks the classes, and counts the ends of lines that have a rank. */
 static size_t rank_classes(finder *f) {
     size_t ends = 0;
-    for (size_t c = 0; c < f->features->class_count; c++)
+    for (size_t c = 0; c < f->features->class_count; c++) {
         f->ranks[c] = camber_features_rank_ends(f->features, (uint32_t)c);
+        f->dot_class[c] = NONE;
+    }
     for (size_t p = f->first_polyline; p < f->polyline_end; p++)
-        ends += line_at(f, p).rank != CAMBER_NO_RANK ? 2 : 0;
+        ends += line_at(f, p).open ? 2 : 0;
     return ends;
 }
 
@@ -173,24 +194,29 @@ camber_status camber_features_add_ends(camber_features *features, size_t first_p
                 .first_polyline = first_polyline,
                 .polyline_end = features->polyline_count,
                 .slot_count = 16};
+    camber_status status = CAMBER_ERROR_MEMORY;
     if (!features->schema->rank_ends || first_polyline == features->polyline_count)
         return CAMBER_OK;
-    camber_status status = CAMBER_ERROR_MEMORY;
-    if (!(f.ranks = camber_alloc(context, features->class_count, sizeof *f.ranks)))
-        return status;
+    if (!(f.ranks = camber_alloc(context, features->class_count, sizeof *f.ranks)) ||
+        !(f.dot_class = camber_alloc(context, features->class_count, sizeof *f.dot_class)))
+        goto done;
     const size_t end_count = rank_classes(&f);
     while (f.slot_count < 2 * end_count)
         f.slot_count *= 2;
-    if ((f.nodes = camber_alloc(context, end_count, sizeof *f.nodes)) &&
-        (f.slots = camber_alloc_zero(context, f.slot_count, sizeof *f.slots))) {
-        add_nodes(&f);
-        touch_nodes(&f);
-        if (find_dots(&f))
-            status = append_dots(&f);
-    }
+    if (!(f.nodes = camber_alloc(context, end_count, sizeof *f.nodes)) ||
+        !(f.ends = camber_alloc(context, end_count, sizeof *f.ends)) ||
+        !(f.slots = camber_alloc_zero(context, f.slot_count, sizeof *f.slots)))
+        goto done;
+    add_nodes(&f);
+    pass_nodes(&f);
+    if (find_dots(&f))
+        status = append_dots(&f);
+done:
     camber_free(context, f.dots);
     camber_free(context, f.slots);
+    camber_free(context, f.ends);
     camber_free(context, f.nodes);
+    camber_free(context, f.dot_class);
     camber_free(context, f.ranks);
     return status;
 }

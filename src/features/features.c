@@ -242,8 +242,8 @@ double camber_features_rank_ends(const camber_features *features, uint32_t class
     return rank_of(features, features->schema, features->style, &features->classes[class_index]);
 }
 
-/* Whether the other style leaves the same classes to plain layers, gives lines the same ends, and its symbol layers take
- * the same classes. */
+/* Whether the other style leaves the same classes to plain layers, gives lines the same ends, and its symbol layers
+ * take the same classes. */
 static bool takes_the_same(const camber_features *features, const camber_schema *schema, const camber_style *style) {
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
@@ -476,7 +476,8 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
 }
 
 static uint64_t hash_class(const camber_feature_class *one, const camber_value *values, size_t count) {
-    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry << 2 | (uint64_t)one->is_ends << 1 | one->unsorted);
+    uint64_t hash = camber_mix(camber_mix(one->source, one->layer),
+                               (uint64_t)one->geometry << 2 | (uint64_t)one->is_ends << 1 | one->unsorted);
     hash = camber_mix(hash_value(hash, &one->id), (uintptr_t)one->all);
     for (size_t i = 0; i < count; i++)
         hash = hash_value(hash, &values[i]);

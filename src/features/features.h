@@ -183,9 +183,9 @@ typedef enum camber_merge_rule {
 camber_status camber_features_add_ends(camber_features *features, size_t first_polyline);
 
 /* If merges is set, merges the lines (not the areas) from first_polyline on. Then adds their ends, computes the
- * importance of the points, and drops lines outside the set's region. It measures the time that both steps take. If the style depends on
- * the direction of lines, ANY becomes DIRECTED. Lines of labels are always merged. Their directions count only if icons
- * show them. */
+ * importance of the points, and drops lines outside the set's region. It measures the time that both steps take. If the
+ * style depends on the direction of lines, ANY becomes DIRECTED. Lines of labels are always merged. Their directions
+ * count only if icons show them. */
 camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
                                               camber_merge_rule rule);
 /* Merges the lines from first_polyline on. */

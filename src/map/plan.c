@@ -32,8 +32,8 @@ camber_feature_view camber_plan_view_of(const camber_features *features, const c
 }
 
 /* Areas are filled. The outlines of polygons are also lines. Points are drawn only by circles, and by plain layers as
- * dots, which are round caps. Circles are drawn at all points of any geometry, and the ends of lines by layers that tuck
- * them. */
+ * dots, which are round caps. Circles are drawn at all points of any geometry, and the ends of lines by layers that
+ * tuck them. */
 static bool takes_kind(const camber_style_layer *layer, camber_plan_part part, const camber_feature_class *class) {
     const camber_geometry_kind kind = class->geometry;
     if (class->is_ends)
@@ -73,8 +73,8 @@ bool camber_plan_labels(const camber_features *features, const camber_style_laye
 bool camber_plan_takes(const camber_features *features, const camber_style_layer *layer, double zoom,
                        const camber_feature_class *class) {
     const bool outlined = layer->kind == CAMBER_LAYER_FILL && layer->properties[CAMBER_FILL_OUTLINE_COLOR];
-    const bool fits = takes_kind(layer, part_of(layer), class) ||
-                      (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class));
+    const bool fits =
+        takes_kind(layer, part_of(layer), class) || (outlined && takes_kind(layer, CAMBER_PLAN_OUTLINE, class));
     if (layer->kind == CAMBER_LAYER_BACKGROUND || layer->kind == CAMBER_LAYER_SYMBOL || !fits ||
         !camber_plan_comes_to(features, layer, class))
         return false;

@@ -95,7 +95,8 @@ static const double KEYS_A_LAYER = 4096.0;
 static double rank_ends(const camber_style *style, const char *source_layer, const camber_feature_view *feature) {
     for (size_t i = style->layer_count; i-- > 0;) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->kind != CAMBER_LAYER_LINE || !layer->tucks || (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
+        if (layer->kind != CAMBER_LAYER_LINE || !layer->tucks ||
+            (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
             !camber_style_layer_takes(layer, feature))
             continue;
         const double key = camber_style_layer_paint(layer, layer->min_zoom, feature).sort_key;

@@ -13,7 +13,11 @@ static const char *const styles[] = {
      "\"paint\":{\"line-color\":\"#060\",\"line-width\":5,\"line-opacity\":0.6,\"line-dasharray\":[3,2],"
      "\"line-offset\":[\"case\",[\"==\",[\"get\",\"highway\"],\"primary\"],30,-4],\"line-blur\":2}}]}"),
     ("{\"version\":8,\"sources\":{},\"layers\":[{\"id\":\"a\",\"type\":\"line\",\"filter\":[\"has\",\"highway\"],"
-     "\"paint\":{\"line-color\":\"#a0a\",\"line-width\":2,\"line-gap-width\":40,\"line-translate\":[60,-50]}}]}")};
+     "\"paint\":{\"line-color\":\"#a0a\",\"line-width\":2,\"line-gap-width\":40,\"line-translate\":[60,-50]}}]}"),
+    ("{\"version\":8,\"sources\":{},\"layers\":[{\"id\":\"a\",\"type\":\"line\",\"metadata\":{\"camber:tuck\":true},"
+     "\"layout\":{\"line-cap\":\"round\",\"line-sort-key\":[\"match\",[\"get\",\"highway\"],\"primary\",1,0]},"
+     "\"paint\":{\"line-color\":[\"match\",[\"get\",\"highway\"],\"primary\",\"#c00\",\"#00c\"],\"line-width\":18}}]"
+     "}")};
 enum { STYLES = sizeof styles / sizeof *styles };
 
 static map open_for(fixture *f, const char *style, const char *path, const camber_scene_desc *desc) {

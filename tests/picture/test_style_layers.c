@@ -67,6 +67,43 @@ static void test_sort_key(void **state) {
     map_close(&m);
 }
 
+/* A line of two points, in degrees; k is its sort key and its colour. */
+#define WAY(k, color, x0, y0, x1, y1)                                                                                  \
+    "{\"type\": \"Feature\", \"properties\": {\"k\": " #k ", \"c\": \"" color "\"}, \"geometry\": {\"type\": "         \
+    "\"LineString\", \"coordinates\": [[" #x0 ", " #y0 "], [" #x1 ", " #y1 "]]}}"
+
+/* Round ends of layers that tuck them: the end of a line is at the picture's middle, and comes from the west. */
+static void test_tucked_ends(void **state) {
+    fixture *s = *state;
+    static const struct {
+        const char *ways;
+        double past[4], beside[4]; /* the colour 6 px past the end, and 7 px south of that point's west */
+    } cases[] = {
+        {WAY(2, "#f00", -3, 0, 0, 0), {1, 0, 0, 1}, {1, 0, 0, 1}},
+        {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(1, "#00f", 0, 0, 3, 0), {0, 0, 1, 1}, {0, 0, 0, 0}},
+        {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(3, "#0f0", 0, 0, 3, 0), {0, 1, 0, 1}, {1, 0, 0, 1}},
+        {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(2, "#f00", 0, 0, 0, 3) "," WAY(2, "#f00", 0, 0, -3, 3),
+         {1, 0, 0, 1},
+         {1, 0, 0, 1}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char source[2048];
+        snprintf(source, sizeof source, "\"s\": " LINES("%s"), cases[i].ways);
+        map m =
+            open_map(s, source,
+                     "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"metadata\": {\"camber:tuck\": true}, "
+                     "\"layout\": {\"line-cap\": \"round\", \"line-sort-key\": [\"get\", \"k\"]}, \"paint\": "
+                     "{\"line-width\": [\"match\", [\"get\", \"k\"], 2, 20, 8], \"line-color\": [\"get\", \"c\"]}}",
+                     0);
+        picture p = map_draw(s, &m);
+        const double *past = cases[i].past, *beside = cases[i].beside;
+        assert_pixel(&p, 70, 63, past[0], past[1], past[2], past[3]);
+        assert_pixel(&p, 66, 70, beside[0], beside[1], beside[2], beside[3]);
+        picture_free(&p);
+        map_close(&m);
+    }
+}
+
 /* One layer, one pass, a stroke for each kind. */
 static void test_strokes_by_feature(void **state) {
     fixture *s = *state;
@@ -352,11 +389,17 @@ int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sort_key),      cmocka_unit_test(test_strokes_by_feature),
-        cmocka_unit_test(test_sources),       cmocka_unit_test(test_translate),
-        cmocka_unit_test(test_layer_opacity), cmocka_unit_test(test_many_layers),
-        cmocka_unit_test(test_border),        cmocka_unit_test(test_sharing),
-        cmocka_unit_test(test_overlap),       cmocka_unit_test(test_round_limit),
+        cmocka_unit_test(test_sort_key),
+        cmocka_unit_test(test_tucked_ends),
+        cmocka_unit_test(test_strokes_by_feature),
+        cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_translate),
+        cmocka_unit_test(test_layer_opacity),
+        cmocka_unit_test(test_many_layers),
+        cmocka_unit_test(test_border),
+        cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_round_limit),
     };
     const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;

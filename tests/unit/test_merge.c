@@ -337,6 +337,132 @@ static void test_any_network(void **state) {
     assert_true(merged > 3000 && rings > 30);
 }
 
+/* ---- Ends ---- */
+
+/* Class 0 is below class 1; class 2 has no part in it. */
+static double rank_ends(const camber_style *style, const char *source_layer, const camber_feature_view *feature) {
+    (void)style;
+    (void)source_layer;
+    return feature->values->number < 2.0 ? feature->values->number : CAMBER_NO_RANK;
+}
+
+static void begin_ends(fixture *it) {
+    uint32_t layer;
+    begin(it);
+    it->style.schema.rank_ends = rank_ends;
+    assert_int_equal(camber_features_find_layer(it->features, "", &layer), CAMBER_OK);
+}
+
+/* How many dots of a class are at a point. */
+static size_t dots_at(const camber_features *set, double number, double x, double y) {
+    size_t count = 0;
+    for (size_t i = 0; i < set->polyline_count; i++) {
+        const camber_feature_class *class = &set->classes[class_of(set, i)];
+        const double *at = set->points + 2 * set->offsets[i];
+        if (!class->is_ends || at[0] != x || at[1] != y)
+            continue;
+        assert_int_equal(set->offsets[i + 1] - set->offsets[i], 1);
+        count += set->values[class->first_value].number == number;
+    }
+    return count;
+}
+
+static void test_known_ends(void **state) {
+    (void)state;
+    static const struct {
+        const char *what;
+        int classes[3];
+        double points[3][4]; /* two points a line */
+        size_t dots[2];      /* at 0, 0: of class 0 and 1 */
+    } cases[] = {
+        {"alone", {1, 1, 1}, {{-1, 0, 0, 0}, {5, 5, 6, 6}, {6, 7, 8, 9}}, {0, 1}},
+        {"goes on below", {1, 0, 1}, {{-1, 0, 0, 0}, {0, 0, 1, 0}, {6, 7, 8, 9}}, {1, 0}},
+        {"two below", {1, 0, 0}, {{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, {1, 0}},
+        {"an equal corner", {1, 1, 0}, {{-1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 1, 1}}, {1, 1}},
+        {"others do not count", {1, 2, 2}, {{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, {0, 1}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        fixture it;
+        begin_ends(&it);
+        for (int k = 0; k < 3; k++)
+            add(&it, cases[i].classes[k], 2, cases[i].points[k]);
+        assert_int_equal(camber_features_add_ends(it.features, 0), CAMBER_OK);
+        for (int c = 0; c < 2; c++)
+            if (dots_at(it.features, c, 0, 0) != cases[i].dots[c])
+                fail_msg("%s: %zu dots of class %d", cases[i].what, dots_at(it.features, c, 0, 0), c);
+        camber_features_count(it.features);
+        assert_int_equal(it.features->stats.features, 3);
+        assert_int_equal(it.features->stats.polylines, 3);
+        assert_int_equal(it.features->stats.points, 6);
+        end(&it);
+    }
+    /* A line that passes covers the ends of those that are not above it. */
+    fixture it;
+    begin_ends(&it);
+    add(&it, 1, 3, (double[]){-1, 0, 0, 0, 1, 0});
+    add(&it, 1, 2, (double[]){0, 0, 0, 1});
+    add(&it, 0, 2, (double[]){0, 0, 0, -1});
+    add(&it, 0, 3, (double[]){4, 0, 5, 0, 6, 0});
+    add(&it, 1, 2, (double[]){5, 0, 5, 1});
+    assert_int_equal(camber_features_add_ends(it.features, 0), CAMBER_OK);
+    assert_int_equal(dots_at(it.features, 0, 0, 0) + dots_at(it.features, 1, 0, 0), 0);
+    assert_int_equal(dots_at(it.features, 0, 5, 0) + dots_at(it.features, 1, 5, 0), 0);
+    assert_int_equal(dots_at(it.features, 1, -1, 0), 1);
+    end(&it);
+}
+
+static double rank_of(const camber_features *set, size_t polyline) {
+    const camber_feature_class *class = &set->classes[class_of(set, polyline)];
+    const double number = set->values[class->first_value].number;
+    return class->geometry == CAMBER_GEOMETRY_LINE && !class->is_ends && number < 2.0 ? number : CAMBER_NO_RANK;
+}
+
+/* What is at a grid node: lines that end there, and those that do not, by class. */
+typedef struct node_lines {
+    size_t ends[2], passes[2];
+} node_lines;
+
+static node_lines lines_at(const camber_features *set, size_t polylines, double x, double y) {
+    node_lines found = {0};
+    for (size_t i = 0; i < polylines; i++) {
+        const double rank = rank_of(set, i);
+        const double *p = set->points + 2 * set->offsets[i];
+        const size_t count = set->offsets[i + 1] - set->offsets[i];
+        const bool ring = p[0] == p[2 * count - 2] && p[1] == p[2 * count - 1];
+        for (size_t k = ring; k < count && rank >= 0.0; k++)
+            if (p[2 * k] == x && p[2 * k + 1] == y)
+                (!ring && (k == 0 || k + 1 == count) ? found.ends : found.passes)[(int)rank]++;
+    }
+    return found;
+}
+
+static void test_any_ends(void **state) {
+    (void)state;
+    uint64_t seed = 7;
+    size_t round_ends = 0, flat_ends = 0;
+    for (int round = 0; round < 1000; round++) {
+        fixture it;
+        begin_ends(&it);
+        make_network(&it, &seed);
+        const size_t polylines = it.features->polyline_count;
+        assert_int_equal(camber_features_add_ends(it.features, 0), CAMBER_OK);
+        for (int x = 0; x < GRID; x++)
+            for (int y = 0; y < GRID; y++) {
+                const node_lines at = lines_at(it.features, polylines, x, y);
+                const size_t high = at.ends[1] + at.passes[1], low = at.ends[0] + at.passes[0];
+                const bool upper = at.ends[1] && !at.passes[1] && (high > 1 || low == 0);
+                const bool lower = at.ends[0] && (high ? !at.passes[1] : !at.passes[0]);
+                assert_int_equal(dots_at(it.features, 1, x, y), upper);
+                assert_int_equal(dots_at(it.features, 0, x, y), lower);
+                round_ends += (size_t)upper + lower;
+                flat_ends += at.ends[1] && !upper;
+            }
+        end(&it);
+    }
+    print_message("%zu nodes with round ends, %zu with flat ones\n", round_ends, flat_ends);
+    assert_true(round_ends > 1000 && flat_ends > 1000);
+}
+
 static void test_memory(void **state) {
     (void)state;
     fixture it;
@@ -466,6 +592,7 @@ int main(void) {
         cmocka_unit_test(test_known_lines), cmocka_unit_test(test_junctions_and_rings),
         cmocka_unit_test(test_straight_on), cmocka_unit_test(test_star),
         cmocka_unit_test(test_counts),      cmocka_unit_test(test_any_network),
+        cmocka_unit_test(test_known_ends),  cmocka_unit_test(test_any_ends),
         cmocka_unit_test(test_memory),      cmocka_unit_test(test_cities_against_geos),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -115,9 +115,9 @@ static bool shares_polylines(const camber_plan_layer *one, const camber_plan_lay
     const camber_style_layer *a = one->look.layer, *b = other->look.layer;
     const bool same_part =
         one->part == other->part || (one->part <= CAMBER_PLAN_BORDER && other->part <= CAMBER_PLAN_BORDER);
-    return same_part && a->plain == b->plain && a->tucks == b->tucks && a->source_index == b->source_index &&
-           same_text(a->source_layer, b->source_layer) && same_text(a->filter_key, b->filter_key) &&
-           camber_layer_look_shares(&one->look, &other->look);
+    return same_part && a->plain == b->plain && a->tucks == b->tucks && a->least_area == b->least_area &&
+           a->source_index == b->source_index && same_text(a->source_layer, b->source_layer) &&
+           same_text(a->filter_key, b->filter_key) && camber_layer_look_shares(&one->look, &other->look);
 }
 
 /* A hash table of sets. The key is what layers must have in common to share one, so that the time grows only linearly
@@ -163,6 +163,13 @@ static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
     layer->ramp = made;
 }
 
+/* Returns the least area of the rings that a layer fills. It changes at whole zooms only, so that between them the same
+ * rings are drawn. */
+static double least_area_of(const camber_plan_layer *layer) {
+    const double px = CAMBER_WORLD_CSS_PX * camber_exp2(floor(layer->look.zoom));
+    return layer->part == CAMBER_PLAN_AREA ? layer->look.layer->least_area / (px * px) : 0.0;
+}
+
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
                       const camber_view *view, camber_plan_part part) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
@@ -173,8 +180,8 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
     find_ramp(plan, made);
     uint32_t *slot = find_set(plan, table, made);
     if (*slot == 0) {
-        plan->sets[plan->set_count] =
-            (camber_plan_set){.first_layer = plan->layer_count, .last_layer = plan->layer_count};
+        plan->sets[plan->set_count] = (camber_plan_set){
+            .first_layer = plan->layer_count, .last_layer = plan->layer_count, .least_area = least_area_of(made)};
         *slot = (uint32_t)++plan->set_count;
     }
     made->set = *slot - 1;
@@ -693,6 +700,8 @@ static void end_set(camber_plan *plan, camber_plan_set *set) {
     rank_translucent(plan, set);
     if (set->sorted)
         plan->key = camber_hash(plan->key, keys, set->pair_count * sizeof *keys);
+    if (set->least_area > 0.0)
+        plan->key = camber_hash(plan->key, &set->least_area, sizeof set->least_area);
 }
 
 /* Numbers the pairs of sets and classes, set by set. */
@@ -808,6 +817,26 @@ static uint32_t class_at(const camber_features *features, const uint32_t *polyli
     return features->feature_class[features->polyline_feature[*polyline]];
 }
 
+/* Whether a set draws a polyline of its classes: a ring may be too small. Its size is that of a box around the points
+ * that no simplification drops, so it does not depend on which of the others are there. */
+static bool is_large_enough(const camber_features *features, const camber_plan_set *set, size_t polyline) {
+    double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
+    if (!(set->least_area > 0.0) || !features->importance)
+        return true;
+    for (size_t i = features->offsets[polyline]; i < features->offsets[polyline + 1]; i++) {
+        const double x = features->points[2 * i], y = features->points[2 * i + 1];
+        if (isfinite(features->importance[i]))
+            continue;
+        x0 = x < x0 ? x : x0;
+        x1 = x > x1 ? x : x1;
+        y0 = y < y0 ? y : y0;
+        y1 = y > y1 ? y : y1;
+        if ((x1 - x0) * (y1 - y0) >= set->least_area)
+            return true;
+    }
+    return false;
+}
+
 camber_status camber_plan_list(const camber_features *features, const camber_plan *plan, const uint32_t *polylines,
                                size_t polyline_count, camber_plan_entries *list) {
     const camber_class_sets *by_class = &plan->by_class;
@@ -819,7 +848,7 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
     for (size_t i = 0; i < polyline_count; i++) {
         const uint32_t class = class_at(features, polylines, i, &p);
         for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
-            firsts[by_class->pairs[k].set + 1]++;
+            firsts[by_class->pairs[k].set + 1] += is_large_enough(features, plan->sets + by_class->pairs[k].set, p);
     }
     for (size_t s = 0; s < plan->set_count; s++)
         firsts[s + 1] += firsts[s];
@@ -829,7 +858,9 @@ camber_status camber_plan_list(const camber_features *features, const camber_pla
     for (size_t i = 0; i < polyline_count; i++) {
         const uint32_t class = class_at(features, polylines, i, &p);
         for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
-            list->entries[firsts[by_class->pairs[k].set]++] = (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
+            if (is_large_enough(features, plan->sets + by_class->pairs[k].set, p))
+                list->entries[firsts[by_class->pairs[k].set]++] =
+                    (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
     }
     camber_status status = CAMBER_OK;
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)

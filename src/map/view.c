@@ -14,7 +14,6 @@
 /* The square of Web Mercator ends at CAMBER_MERCATOR_LATITUDE; this is how the limit is usually written. */
 static const double LARGEST_LATITUDE_DEG = 85.051129;
 static const double LARGEST_ZOOM = 24.0;
-static const double WORLD_CSS_PX = 512.0; /* at zoom 0 */
 
 /* Projects to world coordinates. The latitude limit with six digits is slightly outside the world, so y is clamped. */
 static void to_world(double longitude, double latitude, double *x, double *y) {
@@ -51,7 +50,7 @@ static camber_status check_size(camber_context *context, const camber_view_desc 
 
 static void set_zoom(camber_view *view, double zoom) {
     view->zoom = zoom;
-    view->scale_px = WORLD_CSS_PX * view->ratio * camber_exp2(zoom);
+    view->scale_px = CAMBER_WORLD_CSS_PX * view->ratio * camber_exp2(zoom);
 }
 
 static void set_bearing(camber_view *view, double bearing_deg) {
@@ -157,7 +156,7 @@ void camber_view_frame(camber_view *view, camber_box bounds, double fill, double
     const bool covers = view->cover && isfinite(across) && isfinite(down);
     const double at_once = covers ? fmax(across, down) / fill : fmin(across, down);
     /* A single point divides by 0, and the infinite zoom is cut to the largest one. */
-    const double zoom = log2(at_once / (WORLD_CSS_PX * view->ratio));
+    const double zoom = log2(at_once / (CAMBER_WORLD_CSS_PX * view->ratio));
     set_zoom(view, zoom < max_zoom ? zoom : max_zoom);
 }
 

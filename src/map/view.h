@@ -12,6 +12,9 @@ typedef struct camber_box {
     double x0, y0, x1, y1;
 } camber_box;
 
+/* Width of the world at zoom 0. */
+#define CAMBER_WORLD_CSS_PX 512.0
+
 #define CAMBER_BOX_EMPTY ((camber_box){1.0, 1.0, 0.0, 0.0})
 
 typedef struct camber_view {

@@ -173,6 +173,10 @@ set(city_works_transportation [=[["in", "_construction", ["to-string", ["get", "
 set(city_building_tiles building buildings)
 set(city_hedge_osm [=[["any", ["==", ["get", "barrier"], "hedge"], ["==", ["get", "natural"], "tree_row"]]]=])
 
+# Kinds of which areas are left out as long as they are smaller than that, in px^2.
+set(city_small reserve built commerce industry campus farm field park wood sand rock wetland)
+set(city_least_area 12)
+
 # The first zoom at which a kind of small areas is drawn.
 set(city_zoom_pitch 13)
 set(city_zoom_pier 11)
@@ -256,6 +260,9 @@ function(city_layer out theme kind id head filter)
   endif()
   if(DEFINED city_zoom_${kind})
     string(APPEND paint ", \"fill-opacity\": [\"step\", [\"zoom\"], 0, ${city_zoom_${kind}}, 1]")
+  endif()
+  if(kind IN_LIST city_small)
+    string(APPEND head "\n     \"metadata\": {\"camber:least-area\": ${city_least_area}},")
   endif()
   if(filter)
     string(APPEND head "\n     \"filter\": ${filter},")

@@ -170,18 +170,19 @@ static bool read_overlap(camber_document *d, const json_t *json, camber_style_la
     return fail_metadata(d, key, "expected \"flatten\", \"accumulate\" or \"unite\"; write one of them");
 }
 
-/* Reads the metadata {"camber:repeat": PX}. */
-static bool read_repeat(camber_document *d, const json_t *json, camber_style_layer *layer) {
-    const json_t *repeat = json_object_get(json_object_get(json, "metadata"), "camber:repeat");
-    const double px = repeat ? json_number_value(repeat) : -1.0;
-    layer->repeat_px = px;
-    return !repeat || (json_is_number(repeat) && px >= 0.0 && px <= 1000.0) ||
-           fail_metadata(d, "camber:repeat", "expected a number of px from 0 to 1000; write one");
+/* Reads metadata such as {"camber:repeat": PX}, a number from 0 to 1000. */
+static bool read_size(camber_document *d, const json_t *json, const char *key, double missing, double *size) {
+    const json_t *value = json_object_get(json_object_get(json, "metadata"), key);
+    *size = value ? json_number_value(value) : missing;
+    return !value || (json_is_number(value) && *size >= 0.0 && *size <= 1000.0) ||
+           fail_metadata(d, key, "expected a number of px from 0 to 1000; write one");
 }
 
 static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
     return read_overlap(d, json, layer) && read_flag(d, json, "camber:plain", &layer->plain) &&
-           read_flag(d, json, "camber:tuck", &layer->tucks) && read_repeat(d, json, layer);
+           read_flag(d, json, "camber:tuck", &layer->tucks) &&
+           read_size(d, json, "camber:repeat", -1.0, &layer->repeat_px) &&
+           read_size(d, json, "camber:least-area", 0.0, &layer->least_area);
 }
 
 /* ---- Filters ---- */

@@ -167,6 +167,7 @@ typedef struct camber_style_layer {
     camber_overlap overlap;    /* from its metadata, because the specification has no property for it */
     bool plain;                /* from its metadata: draws only features that no other layer draws */
     bool tucks;                /* from its metadata: round caps of lines are left out where the line goes on below */
+    double least_area;         /* from its metadata: smaller rings are not filled, px^2 at the next lower whole zoom */
     double repeat_px;          /* from its metadata: the same words are not shown nearer than that. < 0: not given */
     camber_expression *filter; /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */

@@ -206,7 +206,8 @@ set(city_light_building_far "#e1d8cb")
 set(city_light_building "#e0d7cb")
 set(city_light_building_edge "#c6bbad")
 set(city_light_stream   "#9ac7d8")
-set(city_light_rail     "#8b827c")
+set(city_light_rail     "#a0978f")
+set(city_light_rail_far "#bfb6ae")
 set(city_light_border   "#a183a8")
 set(city_light_border_band "#dfd0dd")
 set(city_light_ferry    "#6d9db2")
@@ -238,7 +239,8 @@ set(city_dark_building_far "#1e2533")
 set(city_dark_building "#212937")
 set(city_dark_building_edge "#323d50")
 set(city_dark_stream   "#285d82")
-set(city_dark_rail     "#6a6680")
+set(city_dark_rail     "#5d5a71")
+set(city_dark_rail_far "#45455a")
 set(city_dark_border   "#7d6e94")
 set(city_dark_border_band "#2c2a3d")
 set(city_dark_ferry    "#417294")
@@ -316,7 +318,7 @@ set(city_template_rail [=[
     {"id": "@ID@", "type": "line",@HEAD@
      "filter": @FILTER@,
      "layout": {"line-join": "round", "line-round-limit": 1},
-     "paint": {"line-color": "@RAIL@",
+     "paint": {"line-color": ["interpolate", ["linear"], ["zoom"], 11, "@RAIL_FAR@", 16, "@RAIL@"],
                "line-width": ["let", "kind", ["case", ["has", "service"], 3, @KIND@],
                  ["interpolate", ["exponential", 1.4], ["zoom"],
                    8, 0, 9, ["at", ["var", "kind"], ["literal", [0.4, 0, 0, 0]]],
@@ -329,11 +331,11 @@ set(city_template_ties [=[
     {"id": "@ID@-ties", "type": "line",@HEAD@
      "filter": @FILTER@,
      "layout": {"line-join": "round", "line-round-limit": 1},
-     "paint": {"line-color": "@RAIL@", "line-dasharray": [0.3, 2],
+     "paint": {"line-color": ["interpolate", ["linear"], ["zoom"], 11, "@RAIL_FAR@", 16, "@RAIL@"], "line-dasharray": [0.25, 2.4],
                "line-width": ["let", "kind", ["case", ["has", "service"], 3, @KIND@],
                  ["interpolate", ["exponential", 1.4], ["zoom"],
-                   13.9, 0, 14, ["at", ["var", "kind"], ["literal", [2.6, 0, 0, 0]]],
-                   16, ["at", ["var", "kind"], ["literal", [4.6, 0, 0, 0]]],
+                   13.9, 0, 14, ["at", ["var", "kind"], ["literal", [2.4, 0, 0, 0]]],
+                   16, ["at", ["var", "kind"], ["literal", [4, 0, 0, 0]]],
                    20, ["at", ["var", "kind"], ["literal", [15, 0, 0, 0]]]]]}}]=])
 # The borders of countries and regions. The gaps between a country's dashes are paler, and not what is below: above a
 # river both would make one motley line.
@@ -520,7 +522,7 @@ endfunction()
 # Appends the areas and lines. with_osm: for OpenStreetMap's keys, too, and not only for the layers of tiles.
 # tile_source: members of the layers that draw tiles.
 function(city_layers out theme)
-  foreach(color building building_far building_edge water stream rail border border_band ferry pier runway lift hedge works)
+  foreach(color building building_far building_edge water stream rail rail_far border border_band ferry pier runway lift hedge works)
     string(TOUPPER ${color} name)
     set(${name} "${city_${theme}_${color}}")
   endforeach()

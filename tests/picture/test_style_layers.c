@@ -104,6 +104,47 @@ static void test_tucked_ends(void **state) {
     }
 }
 
+#define SQUARE(color, x0, y0, x1, y1)                                                                                  \
+    "{\"type\": \"Feature\", \"properties\": {\"c\": \"" color                                                         \
+    "\"}, \"geometry\": {\"type\": \"Polygon\", \"coordinates\": "                                                     \
+    "[[[" #x0 ", " #y0 "], [" #x1 ", " #y0 "], [" #x1 ", " #y1 "], [" #x0 ", " #y1 "], [" #x0 ", " #y0 "]]]}}"
+
+/* Two squares beside the middle, of 21 and 187 px^2 at zoom 4; the size at the next lower whole zoom counts. */
+static void test_least_area(void **state) {
+    fixture *s = *state;
+    static const struct {
+        const char *least, *zoom;
+        bool small, large;
+    } cases[] = {{"0", "4", true, true},       {"20", "4", true, true},   {"22", "4", false, true},
+                 {"22", "4.9", false, true},   {"22", "5", true, true},   {"188", "4", false, false},
+                 {"188", "3.9", false, false}, {"22", "3.5", false, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char layer[512];
+        snprintf(layer, sizeof layer,
+                 "{\"id\": \"a\", \"type\": \"fill\", \"source\": \"s\", \"metadata\": {\"camber:least-area\": %s}, "
+                 "\"paint\": {\"fill-color\": [\"get\", \"c\"], \"fill-antialias\": false}}",
+                 cases[i].least);
+        map m =
+            open_map(s, "\"s\": " LINES(SQUARE("#f00", -0.3, -0.1, -0.1, 0.1) "," SQUARE("#00f", 0.1, -0.3, 0.7, 0.3)),
+                     layer, 0);
+        camber_scene_desc desc = {.view = camber_style_get_view(m.style)};
+        desc.view.zoom = atof(cases[i].zoom);
+        desc.view.width = desc.view.height = SIDE;
+        camber_scene_destroy(m.scene);
+        assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
+        picture p = map_draw(s, &m);
+        size_t red = 0, blue = 0;
+        for (size_t k = 0; k < (size_t)SIDE * SIDE; k++) {
+            red += p.rgba[4 * k] > 0;
+            blue += p.rgba[4 * k + 2] > 0;
+        }
+        if ((red > 0) != cases[i].small || (blue > 0) != cases[i].large)
+            fail_msg("%s px^2 at zoom %s: %zu and %zu px", cases[i].least, cases[i].zoom, red, blue);
+        picture_free(&p);
+        map_close(&m);
+    }
+}
+
 /* One layer, one pass, a stroke for each kind. */
 static void test_strokes_by_feature(void **state) {
     fixture *s = *state;
@@ -397,6 +438,7 @@ int main(void) {
         cmocka_unit_test(test_layer_opacity),
         cmocka_unit_test(test_many_layers),
         cmocka_unit_test(test_border),
+        cmocka_unit_test(test_least_area),
         cmocka_unit_test(test_sharing),
         cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_round_limit),

@@ -26,7 +26,8 @@ static const char *const wrong =
     "  {\"id\": \"b\", \"type\": \"line\", \"source\": \"g\", \"minzoom\": 30, \"paint\": []},"
     "  {\"id\": \"c\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": \"round\"}},"
     "  {\"id\": \"d\", \"ref\": \"c\", \"paint\": {\"line-opacity\": 2}}, {\"id\": \"e\", \"ref\": \"d\"},"
-    "  {\"id\": \"f\", \"type\": \"line\", \"metadata\": {\"camber:overlap\": \"darken\", \"camber:repeat\": -1}}]}";
+    "  {\"id\": \"f\", \"type\": \"line\", \"metadata\": {\"camber:overlap\": \"darken\", \"camber:repeat\": -1,"
+    "   \"camber:tuck\": 1, \"camber:least-area\": 1001}}]}";
 
 static void test_all_errors(void **state) {
     (void)state;
@@ -52,7 +53,9 @@ static void test_all_errors(void **state) {
                                          "/layers/7/paint/line-opacity",
                                          "/layers/8/ref",
                                          "/layers/9/metadata/camber:overlap",
-                                         "/layers/9/metadata/camber:repeat"};
+                                         "/layers/9/metadata/camber:repeat",
+                                         "/layers/9/metadata/camber:tuck",
+                                         "/layers/9/metadata/camber:least-area"};
     static const char *const warnings[] = {"/layers/0/paint/line-blurr", "/layers/0/paint/line-cap", "/layers/1",
                                            "/layers/6", "/layers/9"};
     host h;

@@ -609,10 +609,25 @@ static void test_suit(void **state) {
     }
 }
 
-/* A set that is kept in a file has its labels when it is loaded. */
+static double rank_alike(const camber_style *style, const char *source_layer, const camber_feature_view *feature) {
+    (void)style;
+    (void)source_layer;
+    (void)feature;
+    return 1.0;
+}
+
+static size_t count_ends(const camber_features *set) {
+    size_t count = 0;
+    for (size_t i = 0; i < set->feature_count; i++)
+        count += set->classes[set->feature_class[i]].is_ends;
+    return count;
+}
+
+/* A set that is kept in a file has its labels and its ends when it is loaded. */
 static void test_saved(void **state) {
     file_reading *it = *state;
     char path[128];
+    it->style.schema.rank_ends = rank_alike;
     write_pbf(it, "file.pbf");
     draw(it, 7);
     camber_features *set = read_labelled(it, it->path, NULL, true), *loaded = create(it, false);
@@ -624,6 +639,8 @@ static void test_saved(void **state) {
     expect_labels(loaded, 2, 2, 2);
     assert_int_equal(loaded->stats.features, set->stats.features);
     assert_int_equal(loaded->stats.points, set->stats.points);
+    assert_true(count_ends(set) > 0);
+    assert_int_equal(count_ends(loaded), count_ends(set));
     camber_features_destroy(loaded);
     camber_features_destroy(set);
 }

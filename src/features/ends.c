@@ -41,8 +41,8 @@ typedef struct finder {
     uint32_t *ends;  /* the nodes of the two ends of each open line that has a rank, in order */
     uint32_t *slots; /* hash table: a node + 1; 0: free. Its size is a power of two, and at most half are in use */
     size_t node_count, slot_count;
-    end_dot *dots;
-    size_t dot_count, dot_capacity;
+    end_dot *dots; /* at most one for each end */
+    size_t dot_count;
 } finder;
 
 typedef struct line {
@@ -124,26 +124,22 @@ static bool is_round(const end_node *node, double rank) {
 }
 
 /* Adds a dot, unless a line of the same class has it. */
-static bool add_dot(finder *f, uint32_t node, uint32_t class_index) {
+static void add_dot(finder *f, uint32_t node, uint32_t class_index) {
     for (uint32_t i = f->nodes[node].dots; i != NONE; i = f->dots[i].next)
         if (f->dots[i].class_index == class_index)
-            return true;
-    if (!camber_grow(f->features->context, &f->dots, &f->dot_capacity, f->dot_count + 1, sizeof *f->dots))
-        return false;
+            return;
     f->dots[f->dot_count] = (end_dot){node, class_index, f->nodes[node].dots};
     f->nodes[node].dots = (uint32_t)f->dot_count++;
-    return true;
 }
 
-static bool find_dots(finder *f) {
+static void find_dots(finder *f) {
     const uint32_t *end = f->ends;
     for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
         const line l = line_at(f, p);
         for (int last = 0; last < 2 && l.open; last++, end++)
-            if (is_round(f->nodes + *end, l.rank) && !add_dot(f, *end, l.class_index))
-                return false;
+            if (is_round(f->nodes + *end, l.rank))
+                add_dot(f, *end, l.class_index);
     }
-    return true;
 }
 
 /* Finds the class of a line's dots. */
@@ -155,8 +151,8 @@ static camber_status find_class(const finder *f, uint32_t class_index, uint32_t 
         return CAMBER_OK;
     wanted.is_ends = true;
     features->source = wanted.source;
-    const camber_status status =
-        camber_features_find_class_of(features, &wanted, features->values + wanted.first_value, dot_class);
+    const camber_value *values = features->schema->property_count ? features->values + wanted.first_value : NULL;
+    const camber_status status = camber_features_find_class_of(features, &wanted, values, dot_class);
     features->source = source;
     return status;
 }
@@ -205,12 +201,13 @@ camber_status camber_features_add_ends(camber_features *features, size_t first_p
         f.slot_count *= 2;
     if (!(f.nodes = camber_alloc(context, end_count, sizeof *f.nodes)) ||
         !(f.ends = camber_alloc(context, end_count, sizeof *f.ends)) ||
+        !(f.dots = camber_alloc(context, end_count, sizeof *f.dots)) ||
         !(f.slots = camber_alloc_zero(context, f.slot_count, sizeof *f.slots)))
         goto done;
     add_nodes(&f);
     pass_nodes(&f);
-    if (find_dots(&f))
-        status = append_dots(&f);
+    find_dots(&f);
+    status = append_dots(&f);
 done:
     camber_free(context, f.dots);
     camber_free(context, f.slots);

@@ -417,7 +417,7 @@ static double rank_of(const camber_features *set, size_t polyline) {
     return class->geometry == CAMBER_GEOMETRY_LINE && !class->is_ends && number < 2.0 ? number : CAMBER_NO_RANK;
 }
 
-/* What is at a grid node: lines that end there, and those that do not, by class. */
+/* The lines at a grid node, by class: those that end there, and those that do not. */
 typedef struct node_lines {
     size_t ends[2], passes[2];
 } node_lines;

@@ -175,7 +175,7 @@ set(city_hedge_osm [=[["any", ["==", ["get", "barrier"], "hedge"], ["==", ["get"
 
 # Kinds of which areas are left out as long as they are smaller than that, in px^2.
 set(city_small reserve built commerce industry campus farm field park wood sand rock wetland)
-set(city_least_area 12)
+set(city_least_area 8)
 
 # The first zoom at which a kind of small areas is drawn.
 set(city_zoom_pitch 13)

@@ -333,7 +333,7 @@ typedef struct camber_scene_info {
     /* features whose polylines are at least partly in the view, counted once for layers that share lines; a merged
      * polyline counts for all of its features */
     size_t features;
-    size_t polylines, points; /* to tessellate */
+    size_t polylines, points; /* to tessellate, without dots at the ends of lines */
     size_t points_in;         /* points of these features' polylines, before simplification and clipping */
     size_t labels;            /* labels that are shown */
 } camber_scene_info;

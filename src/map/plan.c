@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The round ends of thinner lines are not drawn, since nobody sees them. */
+static const float THINNEST_END_PX = 2.0f;
 /* The largest width of a stroke, as in camber.h. */
 static const double WIDEST_PX = 16384.0;
 static const size_t MOST_ROWS = (size_t)1 << 24, MOST_MATCHES = (size_t)1 << 26;
@@ -545,7 +547,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }
     *failed |= plan->patterns.failed;
-    return table->stroke.width_px > 0.0f || *failed;
+    return table->stroke.width_px > (table->is_ends ? THINNEST_END_PX : 0.0f) || *failed;
 }
 
 /* Computes the tuple of a class of areas; link_areas points the paints to their fills later. false: no layer draws it.

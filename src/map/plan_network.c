@@ -198,7 +198,9 @@ static void count_set(const camber_features *features, const camber_plan_network
     for (size_t i = first; i < end; i++) {
         const uint32_t polyline = geometry->entries[seen->lines.entries[i]].polyline;
         const uint32_t class = features->feature_class[features->polyline_feature[polyline]];
-        if (polyline == before || features->classes[class].is_ends)
+        const bool is_end = features->classes[class].is_ends;
+        seen->end_count += is_end;
+        if (polyline == before || is_end)
             continue;
         before = polyline;
         seen->points_in += camber_features_whole_count(features, polyline);

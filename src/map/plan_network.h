@@ -46,7 +46,8 @@ typedef struct camber_visible_lines {
     uint32_t *rows;          /* by polyline: its row of the plan; its entry is in lines.entries */
     size_t *first_polylines; /* set_count + 1 */
     size_t feature_count;    /* features that are at least partly visible, counted once per set */
-    size_t points_in;        /* points of the polylines that are at least partly visible */
+    size_t points_in;        /* points of the polylines that are at least partly visible, without ends */
+    size_t end_count;        /* polylines of one point, in lines, that are the ends of others */
 } camber_visible_lines;
 
 /* Projects the lines that the camera sees. Call camber_visible_lines_destroy even after a failure. */

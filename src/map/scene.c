@@ -127,8 +127,8 @@ camber_status camber_scene_project(camber_scene *scene) {
     }
     scene->is_projected = true;
     scene->counts.features = scene->seen.feature_count;
-    scene->counts.polylines = scene->seen.lines.polyline_count;
-    scene->counts.points = scene->seen.lines.point_count;
+    scene->counts.polylines = scene->seen.lines.polyline_count - scene->seen.end_count;
+    scene->counts.points = scene->seen.lines.point_count - scene->seen.end_count;
     scene->counts.points_in = scene->seen.points_in;
     return CAMBER_OK;
 }

@@ -185,6 +185,25 @@ static bool read_metadata(camber_document *d, const json_t *json, camber_style_l
            read_size(d, json, "camber:least-area", 0.0, &layer->least_area);
 }
 
+/* Dots stand for the round caps of a layer that tucks them, so these must look like a dot. */
+static void check_tucks(camber_document *d, camber_style_layer *layer) {
+    static const camber_property_id others[] = {CAMBER_LINE_OFFSET,    CAMBER_LINE_GAP_WIDTH, CAMBER_LINE_BLUR,
+                                                CAMBER_LINE_DASHARRAY, CAMBER_LINE_PATTERN,   CAMBER_LINE_GRADIENT};
+    bool fits = layer->kind == CAMBER_LAYER_LINE && layer->overlap != CAMBER_OVERLAP_ACCUMULATE;
+    const size_t depth = d->compiler.path_length;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        fits = fits && !layer->properties[others[i]];
+    if (!layer->tucks || fits)
+        return;
+    layer->tucks = false;
+    camber_compiler_enter_key(&d->compiler, "metadata");
+    camber_compiler_enter_key(&d->compiler, "camber:tuck");
+    camber_compiler_warn(&d->compiler,
+                         "applies only to line layers without line-offset, line-gap-width, line-blur, line-dasharray, "
+                         "line-pattern, line-gradient and \"camber:overlap\": \"accumulate\"; leave it out");
+    d->compiler.path_length = depth;
+}
+
 /* ---- Filters ---- */
 
 static bool write_filter_key(camber_compiler *c, const json_t *filter, char **key) {
@@ -278,9 +297,12 @@ static bool read_layer(camber_document *d, const json_t *json, camber_style_laye
         !camber_document_read_number(d, json, "minzoom", 0.0, 24.0, &layer->min_zoom) ||
         !camber_document_read_number(d, json, "maxzoom", 0.0, 24.0, &layer->max_zoom))
         return false;
-    return read_layer_visibility(d, json, layer) && read_metadata(d, json, layer) && find_source(d, layer) &&
-           read_filter(d, json, layer) && read_properties(d, json, "layout", layer) &&
-           read_properties(d, json, "paint", layer) && read_gradient(d, layer);
+    if (!read_layer_visibility(d, json, layer) || !read_metadata(d, json, layer) || !find_source(d, layer) ||
+        !read_filter(d, json, layer) || !read_properties(d, json, "layout", layer) ||
+        !read_properties(d, json, "paint", layer) || !read_gradient(d, layer))
+        return false;
+    check_tucks(d, layer);
+    return true;
 }
 
 void camber_style_layer_free(camber_context *context, camber_style_layer *layer) {

@@ -106,6 +106,42 @@ static void test_root(void **state) {
     host_done(&h, context);
 }
 
+/* Dots stand for the tucked ends of lines, so the lines must have ends that look like dots. */
+static void test_tucks(void **state) {
+    (void)state;
+    static const struct {
+        const char *layer;
+        bool warns;
+    } cases[] = {
+        {"\"type\": \"line\", \"paint\": {\"line-opacity\": 0.5, \"line-border-width\": 1}", false},
+        {"\"type\": \"line\", \"layout\": {\"line-sort-key\": 1}, \"paint\": {\"line-offset\": 3}", true},
+        {"\"type\": \"line\", \"paint\": {\"line-gap-width\": 3}", true},
+        {"\"type\": \"line\", \"paint\": {\"line-blur\": 3}", true},
+        {"\"type\": \"line\", \"paint\": {\"line-dasharray\": [1, 2]}", true},
+        {"\"type\": \"line\", \"paint\": {\"line-pattern\": \"p\"}", true},
+        {"\"type\": \"line\", \"paint\": {\"line-gradient\": [\"interpolate\", [\"linear\"], "
+         "[\"line-progress\"], 0, \"#f00\", 1, \"#00f\"]}",
+         true},
+        {"\"type\": \"fill\"", true},
+    };
+    host h;
+    camber_context *context = host_context(&h);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char json[640];
+        camber_style_report *report = NULL;
+        snprintf(json, sizeof json,
+                 "{\"version\": 8, \"sprite\": \"s\", \"sources\": {}, \"layers\": [{\"id\": \"a\", "
+                 "\"metadata\": {\"camber:tuck\": true}, %s}]}",
+                 cases[i].layer);
+        assert_int_equal(check(context, json, &report), CAMBER_OK);
+        assert_int_equal(report->error_count, 0);
+        if ((find(report, "/layers/0/metadata/camber:tuck", false) != NULL) != cases[i].warns)
+            fail_msg("%s: %s", cases[i].layer, cases[i].warns ? "no warning" : "a warning");
+        camber_style_report_destroy(report);
+    }
+    host_done(&h, context);
+}
+
 /* Constants inside functions and expressions, and sources: each with its place. */
 static void test_places(void **state) {
     (void)state;
@@ -270,8 +306,9 @@ static void test_symbols(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors),    cmocka_unit_test(test_symbols),
-                                       cmocka_unit_test(test_places),        cmocka_unit_test(test_root),
-                                       cmocka_unit_test(test_what_is_drawn), cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_symbols),
+                                       cmocka_unit_test(test_places),     cmocka_unit_test(test_root),
+                                       cmocka_unit_test(test_tucks),      cmocka_unit_test(test_what_is_drawn),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,17 +19,15 @@
 /* A point at which lines end. */
 typedef struct end_node {
     double at[2];
-    double top;       /* the highest rank of the lines that touch it */
-    uint32_t dots;    /* the first of its dots; NONE: it has none yet */
-    unsigned touches; /* by lines of any rank, counted up to 2 */
-    unsigned at_top;  /* by lines of the highest rank, counted up to 2 */
-    bool passes;      /* a line of the highest rank does not end here */
+    double top;      /* the highest rank of the lines that touch it */
+    uint8_t touches; /* by lines of any rank, counted up to 2 */
+    uint8_t at_top;  /* by lines of the highest rank, counted up to 2 */
+    bool passes;     /* a line of the highest rank does not end here */
 } end_node;
 
 typedef struct end_dot {
     uint32_t node;
     uint32_t class_index; /* of the line */
-    uint32_t next;        /* the node's next dot, or NONE */
 } end_dot;
 
 typedef struct finder {
@@ -38,10 +36,10 @@ typedef struct finder {
     double *ranks;       /* by class */
     uint32_t *dot_class; /* by class: the class of its dots; NONE: not known yet */
     end_node *nodes;
-    uint32_t *ends;  /* the nodes of the two ends of each open line that has a rank, in order */
-    uint32_t *slots; /* hash table: a node + 1; 0: free. Its size is a power of two, and at most half are in use */
-    size_t node_count, slot_count;
-    end_dot *dots; /* at most one for each end */
+    uint32_t *ends;                /* the nodes of the two ends of each open line that has a rank, in order */
+    uint32_t *slots;               /* hash table: a node + 1, later a dot + 1; 0: free. At most half are in use */
+    size_t node_count, slot_count; /* slot_count: a power of two */
+    end_dot *dots;                 /* at most one for each end */
     size_t dot_count;
 } finder;
 
@@ -76,7 +74,7 @@ static uint32_t *slot_of(const finder *f, const double *at) {
 static uint32_t add_node(finder *f, const double *at) {
     uint32_t *slot = slot_of(f, at);
     if (!*slot) {
-        f->nodes[f->node_count] = (end_node){.at = {at[0], at[1]}, .top = CAMBER_NO_RANK, .dots = NONE};
+        f->nodes[f->node_count] = (end_node){.at = {at[0], at[1]}, .top = CAMBER_NO_RANK};
         *slot = (uint32_t)++f->node_count;
     }
     return *slot - 1;
@@ -88,10 +86,12 @@ static void touch(end_node *node, double rank, bool ends) {
         node->at_top = 0;
         node->passes = false;
     }
-    node->touches += node->touches < 2;
+    if (node->touches < 2)
+        node->touches++;
     if (rank < node->top)
         return;
-    node->at_top += node->at_top < 2;
+    if (node->at_top < 2)
+        node->at_top++;
     node->passes |= !ends;
 }
 
@@ -124,21 +124,25 @@ static bool is_round(const end_node *node, double rank) {
 }
 
 /* Adds a dot, unless a line of the same class has it. */
-static void add_dot(finder *f, uint32_t node, uint32_t class_index) {
-    for (uint32_t i = f->nodes[node].dots; i != NONE; i = f->dots[i].next)
-        if (f->dots[i].class_index == class_index)
+static void add_dot(finder *f, end_dot dot) {
+    size_t slot = (size_t)camber_mix(dot.node, dot.class_index) & (f->slot_count - 1);
+    for (; f->slots[slot]; slot = (slot + 1) & (f->slot_count - 1)) {
+        const end_dot *other = f->dots + f->slots[slot] - 1;
+        if (other->node == dot.node && other->class_index == dot.class_index)
             return;
-    f->dots[f->dot_count] = (end_dot){node, class_index, f->nodes[node].dots};
-    f->nodes[node].dots = (uint32_t)f->dot_count++;
+    }
+    f->dots[f->dot_count] = dot;
+    f->slots[slot] = (uint32_t)++f->dot_count;
 }
 
 static void find_dots(finder *f) {
     const uint32_t *end = f->ends;
+    memset(f->slots, 0, f->slot_count * sizeof *f->slots);
     for (size_t p = f->first_polyline; p < f->polyline_end; p++) {
         const line l = line_at(f, p);
         for (int last = 0; last < 2 && l.open; last++, end++)
             if (is_round(f->nodes + *end, l.rank))
-                add_dot(f, *end, l.class_index);
+                add_dot(f, (end_dot){*end, l.class_index});
     }
 }
 

@@ -171,8 +171,13 @@ static int translate(camber_session *session, camber_style_input *document, char
     return camber_report_status(session->report, status);
 }
 
-/* The built-in style, or what it draws of extracts of OpenStreetMap if there is nothing else. */
-static const char *builtin_text(const camber_options *options, camber_theme theme, size_t *size_bytes) {
+/* Whether the style is the one that is taken if none is named. */
+static bool is_default(const char *style) {
+    return !style || (strcmp(style, camber_style_list(0)) == 0 && camber_input_ships(style));
+}
+
+/* The default style, or what it draws of extracts of OpenStreetMap if there is nothing else. */
+static const char *default_text(const camber_options *options, camber_theme theme, size_t *size_bytes) {
     bool is_osm = options->input_count > 0;
     for (size_t i = 0; is_osm && i < options->input_count; i++) {
         const camber_source_desc desc = {.path = options->inputs[i], .layer = options->layer, .where = options->where};
@@ -183,13 +188,13 @@ static const char *builtin_text(const camber_options *options, camber_theme them
 
 int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path) {
     const camber_options *options = session->options;
-    camber_style_input document = {.name = "the built-in style"};
+    camber_style_input document = {.name = options->style ? options->style : "the built-in style"};
     char *translated = NULL;
     int status = CAMBER_EXIT_DONE;
-    if (options->style)
-        status = camber_input_read_style(session, options->style, theme, &document);
+    if (is_default(options->style))
+        document.text = default_text(options, theme, &document.size_bytes);
     else
-        document.text = builtin_text(options, theme, &document.size_bytes);
+        status = camber_input_read_style(session, options->style, theme, &document);
     if (status == CAMBER_EXIT_DONE && camber_plain_is_given(options))
         status = camber_plain_apply(session, &document);
     if (status == CAMBER_EXIT_DONE && options->language)

@@ -418,10 +418,15 @@ expect 0 "a number has a shield, a name has none" render "$tmp/in/refs.geojson" 
 says ' 1 label,'
 rm -f refs.png
 monaco=$here/data/monaco/monaco.osm.pbf
-expect 0 "an extract in the built-in style" render "$monaco" -o extract.png --size 300x300
-expect 0 "an extract in the style city" render "$monaco" -o by_name.png --size 300x300 --style city # another document
-cmp -s extract.png by_name.png || fail "the styles differ"
-rm -f extract.png by_name.png
+# With a file of another format, the whole document of the style is read. The line is far away.
+echo '{"type":"LineString","coordinates":[[100,10],[101,11]]}' >"$tmp/in/far.geojson"
+at=(--center 7.42,43.73 --zoom 14 --size 300x300 --attribution "")
+expect 0 "an extract in the default style" render "$monaco" -o extract.png "${at[@]}"
+expect 0 "an extract and another file" render "$monaco" "$tmp/in/far.geojson" -o two.png "${at[@]}"
+cmp -s extract.png two.png || fail "the styles differ"
+expect 0 "an archive in the default style" tiles "$monaco" -o extract.mbtiles --max-zoom 5
+expect 0 "an archive in the same style, by its name" tiles "$monaco" -o extract.mbtiles --max-zoom 5 --resume --style city
+rm -f extract.png two.png extract.mbtiles
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))

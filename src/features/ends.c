@@ -48,7 +48,7 @@ typedef struct line {
     size_t count;
     uint32_t class_index;
     double rank;
-    bool open; /* it has a rank and two ends */
+    bool open; /* it has a rank and two ends, which may be one point: rings have more points */
 } line;
 
 static line line_at(const finder *f, size_t polyline) {
@@ -58,8 +58,8 @@ static line line_at(const finder *f, size_t polyline) {
               .count = features->offsets[polyline + 1] - first,
               .class_index = features->feature_class[features->polyline_feature[polyline]]};
     l.rank = f->ranks[l.class_index];
-    l.open = l.rank != CAMBER_NO_RANK && l.count > 1 &&
-             memcmp(l.points, l.points + 2 * (l.count - 1), 2 * sizeof *l.points) != 0;
+    l.open = l.rank != CAMBER_NO_RANK &&
+             (l.count < 3 || memcmp(l.points, l.points + 2 * (l.count - 1), 2 * sizeof *l.points) != 0);
     return l;
 }
 

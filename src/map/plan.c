@@ -165,11 +165,11 @@ static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
     layer->ramp = made;
 }
 
-/* Returns the least area of the rings that a layer fills. It changes at whole zooms only, so that between them the same
- * rings are drawn. */
+/* Returns the least area of the rings that a layer fills or outlines. It changes at whole zooms only, so that between
+ * them the same rings are drawn. */
 static double least_area_of(const camber_plan_layer *layer) {
     const double px = CAMBER_WORLD_CSS_PX * camber_exp2(floor(layer->look.zoom));
-    return layer->part == CAMBER_PLAN_AREA ? layer->look.layer->least_area / (px * px) : 0.0;
+    return layer->look.layer->kind == CAMBER_LAYER_FILL ? layer->look.layer->least_area / (px * px) : 0.0;
 }
 
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,

@@ -19,7 +19,7 @@ typedef struct camber_plan_set {
     size_t first_paint;            /* in paints: row_count tuples of layer_count paints */
     size_t first_area;             /* in patterns.areas, laid out like paints, if this is a set of areas */
     bool sorted;                   /* entries are ordered by pair_keys */
-    double least_area;             /* smaller rings are left out, in world coordinates; 0 if they are not areas */
+    double least_area;             /* smaller rings are left out, in world coordinates; 0: none is */
 } camber_plan_set;
 
 /* A part of a layer of the style. Lines and their borders share one geometry. */

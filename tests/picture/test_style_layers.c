@@ -80,6 +80,7 @@ static void test_tucked_ends(void **state) {
         double past[4], beside[4]; /* the colour 6 px past the end, and 7 px south of that point's west */
     } cases[] = {
         {WAY(2, "#f00", -3, 0, 0, 0), {1, 0, 0, 1}, {1, 0, 0, 1}},
+        {WAY(2, "#f00", 0, 0, 0, 0), {1, 0, 0, 1}, {1, 0, 0, 1}},
         {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(1, "#00f", 0, 0, 3, 0), {0, 0, 1, 1}, {0, 0, 0, 0}},
         {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(3, "#0f0", 0, 0, 3, 0), {0, 1, 0, 1}, {1, 0, 0, 1}},
         {WAY(2, "#f00", -3, 0, 0, 0) "," WAY(2, "#f00", 0, 0, 0, 3) "," WAY(2, "#f00", 0, 0, -3, 3),
@@ -133,12 +134,15 @@ static void test_least_area(void **state) {
     } cases[] = {{"0", "4", true, true},       {"20", "4", true, true},   {"22", "4", false, true},
                  {"22", "4.9", false, true},   {"22", "5", true, true},   {"188", "4", false, false},
                  {"188", "3.9", false, false}, {"22", "3.5", false, true}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    static const char *const paints[] = {"\"fill-antialias\": false", "\"fill-outline-color\": [\"get\", \"c\"]"};
+    enum { CASES = sizeof cases / sizeof *cases };
+    for (size_t run = 0; run < 2 * CASES; run++) {
+        const size_t i = run % CASES;
         char layer[512];
         snprintf(layer, sizeof layer,
                  "{\"id\": \"a\", \"type\": \"fill\", \"source\": \"s\", \"metadata\": {\"camber:least-area\": %s}, "
-                 "\"paint\": {\"fill-color\": [\"get\", \"c\"], \"fill-antialias\": false}}",
-                 cases[i].least);
+                 "\"paint\": {\"fill-color\": [\"get\", \"c\"], %s}}",
+                 cases[i].least, paints[run / CASES]);
         map m =
             open_map(s, "\"s\": " LINES(SQUARE("#f00", -0.3, -0.1, -0.1, 0.1) "," SQUARE("#00f", 0.1, -0.3, 0.7, 0.3)),
                      layer, 0);
@@ -154,7 +158,8 @@ static void test_least_area(void **state) {
             blue += p.rgba[4 * k + 2] > 0;
         }
         if ((red > 0) != cases[i].small || (blue > 0) != cases[i].large)
-            fail_msg("%s px^2 at zoom %s: %zu and %zu px", cases[i].least, cases[i].zoom, red, blue);
+            fail_msg("%s, %s px^2 at zoom %s: %zu and %zu px", paints[run / CASES], cases[i].least, cases[i].zoom, red,
+                     blue);
         picture_free(&p);
         map_close(&m);
     }

@@ -417,7 +417,7 @@ static double rank_of(const camber_features *set, size_t polyline) {
     return class->geometry == CAMBER_GEOMETRY_LINE && !class->is_ends && number < 2.0 ? number : CAMBER_NO_RANK;
 }
 
-/* The lines at a grid node, by class: those that end there, and those that do not. */
+/* The lines at a grid node, by class: ends, two of a line of one point, and lines that do not end there. */
 typedef struct node_lines {
     size_t ends[2], passes[2];
 } node_lines;
@@ -428,10 +428,10 @@ static node_lines lines_at(const camber_features *set, size_t polylines, double 
         const double rank = rank_of(set, i);
         const double *p = set->points + 2 * set->offsets[i];
         const size_t count = set->offsets[i + 1] - set->offsets[i];
-        const bool ring = p[0] == p[2 * count - 2] && p[1] == p[2 * count - 1];
+        const bool ring = count > 2 && p[0] == p[2 * count - 2] && p[1] == p[2 * count - 1];
         for (size_t k = ring; k < count && rank >= 0.0; k++)
             if (p[2 * k] == x && p[2 * k + 1] == y)
-                (!ring && (k == 0 || k + 1 == count) ? found.ends : found.passes)[(int)rank]++;
+                (!ring && (k == 0 || k + 1 == count) ? found.ends : found.passes)[(int)rank] += count > 1 ? 1 : 2;
     }
     return found;
 }

@@ -3,6 +3,7 @@
  * Input: a style whose layers are compiled. Output: what the schema says about its layers. The compiler has already
  * added the properties, and which layers read them. */
 #include "features/features.h"
+#include "style/expression.h"
 #include "style/symbol.h"
 
 #include <math.h>
@@ -92,12 +93,18 @@ static bool takes(const camber_style *style, camber_geometry_kind kind, const ch
 /* Sort keys beyond this are cut off, so that layers do not mix. */
 static const double KEYS_A_LAYER = 4096.0;
 
+/* Whether a layer tucks the ends of a line. A filter that depends on the zoom may take it at the highest one only. */
+static bool tucks(const camber_style_layer *layer, const char *source_layer, const camber_feature_view *feature) {
+    return layer->tucks && (!layer->source_layer || strcmp(layer->source_layer, source_layer) == 0) &&
+           (camber_style_layer_takes(layer, feature) ||
+            (layer->filter && layer->filter->reads_zoom &&
+             camber_style_layer_matches(layer, nextafter(layer->max_zoom, 0.0), feature)));
+}
+
 static double rank_ends(const camber_style *style, const char *source_layer, const camber_feature_view *feature) {
     for (size_t i = style->layer_count; i-- > 0;) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->kind != CAMBER_LAYER_LINE || !layer->tucks ||
-            (layer->source_layer && strcmp(layer->source_layer, source_layer) != 0) ||
-            !camber_style_layer_takes(layer, feature))
+        if (!tucks(layer, source_layer, feature))
             continue;
         const double key = camber_style_layer_paint(layer, layer->min_zoom, feature).sort_key;
         return 2.0 * KEYS_A_LAYER * (double)(i + 1) + fmin(fmax(key, -KEYS_A_LAYER), KEYS_A_LAYER);

@@ -105,6 +105,20 @@ static void test_tucked_ends(void **state) {
     }
 }
 
+/* A line that a layer takes only at higher zooms than its lowest has round ends there. */
+static void test_end_by_zoom(void **state) {
+    fixture *s = *state;
+    map m = open_map(s, "\"s\": " LINES(WAY(2, "#f00", -3, 0, 0, 0)),
+                     "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"metadata\": {\"camber:tuck\": true}, "
+                     "\"filter\": [\">=\", [\"zoom\"], 2], \"layout\": {\"line-cap\": \"round\"}, "
+                     "\"paint\": {\"line-width\": 20, \"line-color\": \"#f00\"}}",
+                     0);
+    picture p = map_draw(s, &m);
+    assert_pixel(&p, 70, 63, 1, 0, 0, 1);
+    picture_free(&p);
+    map_close(&m);
+}
+
 /* A dot would not lie on the line, so its layer does not tuck. */
 static void test_offset_end(void **state) {
     fixture *s = *state;
@@ -450,12 +464,19 @@ int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sort_key),      cmocka_unit_test(test_tucked_ends),
-        cmocka_unit_test(test_offset_end),    cmocka_unit_test(test_strokes_by_feature),
-        cmocka_unit_test(test_sources),       cmocka_unit_test(test_translate),
-        cmocka_unit_test(test_layer_opacity), cmocka_unit_test(test_many_layers),
-        cmocka_unit_test(test_border),        cmocka_unit_test(test_least_area),
-        cmocka_unit_test(test_sharing),       cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_sort_key),
+        cmocka_unit_test(test_tucked_ends),
+        cmocka_unit_test(test_offset_end),
+        cmocka_unit_test(test_end_by_zoom),
+        cmocka_unit_test(test_strokes_by_feature),
+        cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_translate),
+        cmocka_unit_test(test_layer_opacity),
+        cmocka_unit_test(test_many_layers),
+        cmocka_unit_test(test_border),
+        cmocka_unit_test(test_least_area),
+        cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_round_limit),
     };
     const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);

@@ -1301,6 +1301,10 @@ done
 set -m
 ulimit -c 0
 mkfifo "$tmp/in/fifo"
+# Until the job is the tool: a shell would remove $tmp if the signal reached it before.
+await_tool() {
+    while [ "/proc/$job/exe" -ef "$BASH" ]; do :; done
+}
 # Starts the tool on standard input that does not end: OUT and the copy have been begun. job is its number.
 begin() { # COMMAND...
     "$@" "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
@@ -1347,6 +1351,7 @@ for delay in 0 0.02 0.05 0.1 0.2; do
     "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
     job=$!
     exec 3>"$tmp/in/fifo"
+    await_tool
     sleep $delay
     kill -HUP $job
     ended 129
@@ -1385,7 +1390,7 @@ name="SIGINT in the middle"
 for delay in 0.02 0.05 0.1 0.15 0.2 0.3 0.5; do
     "$tool" render "$osm" -o a.png --size 4000x4000 2>"$tmp/stderr" &
     job=$!
-    while [ "/proc/$job/exe" -ef "$BASH" ]; do :; done # which would remove $tmp if the signal reached it
+    await_tool
     sleep $delay
     kill -INT $job 2>/dev/null
     wait $job

@@ -38,8 +38,8 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
 DEFAULT_COST = 1.0
-# What a change may take on two processors, with what lint and the build take of it: of a kernel, or whatever else reaches
-# nearly all of ./dev test; of less, such as a reader or the server; of documents alone.
+# A change has so many minutes of two processors, lint and the build included: one of a kernel, or whatever else reaches
+# nearly all of ./dev test; one of less, such as a reader or the server; one of documents alone.
 GOAL_MINUTES, GOAL_MINUTES_OF_LITTLE, GOAL_MINUTES_OF_DOCUMENTS = 25.0, 16.0, 5.0
 MINUTES_BEFORE_TESTS, MINUTES_BEFORE_FEW_TESTS = 2.7, 1.8
 BUSY = 1.9  # of two processors: three tests run at a time, and some wait

@@ -119,10 +119,10 @@ static void set_heed(camber_session *session, wishes *w) {
     camber_guard_unlock(session->guard);
 }
 
-/* Whether the edited file has been saved since it was last checked. If it is missing, it is just being saved. */
+/* Whether the edited file has been saved since it was last checked. If it is missing or empty, it is just being saved. */
 static bool was_saved(wishes *w) {
     struct stat about;
-    if (!w->edited || stat(w->edited, &about) != 0)
+    if (!w->edited || stat(w->edited, &about) != 0 || about.st_size == 0)
         return false;
     const bool saved = about.st_ino != w->about.st_ino || about.st_size != w->about.st_size ||
                        about.st_mtim.tv_sec != w->about.st_mtim.tv_sec ||

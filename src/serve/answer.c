@@ -445,12 +445,13 @@ static enum MHD_Result send_text(request *r, const char *text, size_t size_bytes
     return a.body ? send_answer(r, &a) : MHD_NO;
 }
 
-/* Whether a map has been read, or all of them. */
+/* Whether a map has been read. No map, or one without a name, whose paths are the server's own, stands for all. */
 static bool is_ready(camber_server *server, uint32_t map) {
+    const bool all = map == CAMBER_ROUTE_NO_MAP || !*server->maps[map].name;
     bool ready = true;
     pthread_mutex_lock(&server->mutex);
     for (uint32_t i = 0; i < server->desc.map_count; i++)
-        ready = ready && (server->maps[i].view.ready || (map != CAMBER_ROUTE_NO_MAP && map != i));
+        ready = ready && (server->maps[i].view.ready || (!all && map != i));
     pthread_mutex_unlock(&server->mutex);
     return ready;
 }

@@ -451,8 +451,12 @@ def test_maps():
     expect(server.get("/b/" + tile)[2] == alone["b.json"] and server.get("/x-1/" + tile)[2] == alone["light.pmtiles"], "others")
     server.stop()
 
-    # Light and dark of one map without a name.
+    # Light and dark of one map without a name. /health waits for both.
     write_archive("light.pmtiles", "light", 3)
+    write_map("slow.json", count=20000)
+    server = Server("light.pmtiles", "dark=slow.json")
+    expect(server.get("/dark/" + tile)[0] == 200, "it is told to be ready before its dark map is read")
+    server.stop()
     server = Server("light.pmtiles", "dark=dark.pmtiles")
     expect(server.get("/" + tile)[2] == alone["light.pmtiles"] and server.get("/dark/" + tile)[2] == alone["dark.pmtiles"], "themes")
     themes = [json.loads(server.get(path + "tiles.json")[2])["camber"]["theme"] for path in ("/", "/dark/")]
@@ -843,11 +847,10 @@ def test_reload():
     server.stop()
 
 
-def test_end():
-    """SIGTERM ends what is begun; kill -9 leaves nothing in the way of the next."""
-    write_map("map.json", count=400)
-    server = Server("map.json")
-    results = []
+def serve_busy(count):
+    """A server of as many lines that ten clients wait for, and the answers that there are, which ask(i) adds to."""
+    write_map("map.json", count=count)
+    server, results = Server("map.json"), []
 
     def ask(i):
         status, _, body = server.get(f"/static/9.{i},55.2,11/2000x2000.png")
@@ -858,11 +861,21 @@ def test_end():
         one.start()
     wait_until(lambda: server.metric("requests_in_flight") - 1 + len(results) >= 10,  # the question itself is one
                "not all requests arrive")
-    expect(len(results) < 10, "nothing is begun any more")
-    server.stop()
-    for one in threads:
-        one.join()
-    expect(len(results) == 10 and all(status == 200 and tail == b"IEND\xaeB`\x82" for status, tail in results), results)
+    return server, threads, results
+
+
+def test_end():
+    """SIGTERM ends what is begun; kill -9 leaves nothing in the way of the next."""
+    for count in (400, 1200, 4000):  # until drawing takes longer than asking
+        server, threads, results = serve_busy(count)
+        is_busy = len(results) < 10
+        server.stop()
+        for one in threads:
+            one.join()
+        expect(len(results) == 10 and all(status == 200 and tail == b"IEND\xaeB`\x82" for status, tail in results), results)
+        if is_busy:
+            break
+    expect(is_busy, "nothing is begun any more")
 
     port = find_port()
     server = Server("map.json", listen=f"127.0.0.1:{port}")

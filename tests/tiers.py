@@ -235,27 +235,31 @@ def is_of_little(tests, reached):
     return sum(test.cost for test in everyday if test.name in reached) < 0.75 * sum(test.cost for test in everyday)
 
 
-def goal_minutes(tests, reached, number):
-    """For the change, and what of them goes before the tests."""
+Pace = collections.namedtuple("Pace", "goal before busy")  # minutes; minutes before the tests; processors that are busy
+
+
+def pace_of(tests, reached, number):
     if number is None:
-        return GOAL_MINUTES_OF_DOCUMENTS, MINUTES_BEFORE_FEW_TESTS
+        return Pace(GOAL_MINUTES_OF_DOCUMENTS, MINUTES_BEFORE_FEW_TESTS, 1.0)  # recipes wait for each other
     if is_of_little(tests, reached):
-        return GOAL_MINUTES_OF_LITTLE, MINUTES_BEFORE_FEW_TESTS
-    return GOAL_MINUTES, MINUTES_BEFORE_TESTS
+        return Pace(GOAL_MINUTES_OF_LITTLE, MINUTES_BEFORE_FEW_TESTS, BUSY)
+    return Pace(GOAL_MINUTES, MINUTES_BEFORE_TESTS, BUSY)
 
 
 class Budget:
     """The seconds of a change that its tests of ./dev test and its share leave for what names a changed layer."""
 
     def __init__(self, tests, reached, due, number):
-        self.builds, self.spent = build_costs(tests), 0.0
-        goal, before = goal_minutes(tests, reached, number)
+        self.builds, self.spent, self.pace = build_costs(tests), 0.0, pace_of(tests, reached, number)
         for test in tests:
             if test.name in reached | due:
                 self.spent += test.cost + self.build(test.fixture)
-        self.left = 60 * BUSY * (goal - before) - self.spent
+        self.left = 60 * self.pace.busy * (self.pace.goal - self.pace.before) - self.spent
         if number is not None:
             self.left = max(self.left, LEAST_SECONDS)
+
+    def minutes(self):
+        return self.pace.before + self.spent / self.pace.busy / 60
 
     def build(self, fixture):
         """What is to be built for it, once."""
@@ -302,18 +306,19 @@ def choose(root, tests, changed, number, recipes=()):
         if is_reached:
             reached.add(test.name)
     due = set() if number is None else {name for name in set(shares) - reached if shares[name] == number % SHARES}
-    goal, before = goal_minutes(tests, reached, number)
     budget = Budget(tests, reached, due, number)
+    told = {"test_recipe_" + name for name in recipes}
+    reached |= budget.take_cheapest([test for test in deep if test.name in told - due])
     if budget.take(count_mutants(root, changed) * SECONDS_A_MUTANT, "mutations"):
         reached.add("mutations_changed")
     sanitized = budget.take_cheapest(sanitized, "sanitize", TIMES_UNDER_SANITIZERS)
     if sanitized:
         reached.add("sanitize_changed")
-    reached |= budget.take_cheapest([test for test in deep if test.name not in due])
+    reached |= budget.take_cheapest([test for test in deep if test.name not in due | reached])
     waiting, share = collections.defaultdict(list), due - reached
     for name in sorted(set(shares) - reached - share):
         waiting[None if number is None else (shares[name] - number) % SHARES].append(name)
-    return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed), before + budget.spent / BUSY / 60, goal)
+    return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed), budget.minutes(), budget.pace.goal)
 
 
 def lint_targets(root, changed):

@@ -255,10 +255,13 @@ def test_failures():
     fails("a broken archive", "is damaged", CAMBER=os.path.abspath("broken"))
     fails("a wrong option", "drawing", CAMBER_TILES="--none")
     holder = subprocess.Popen(["flock", "maps/.renew/lock", "sleep", "infinity"], start_new_session=True)
-    wait_until(lambda: subprocess.run(["flock", "-n", "maps/.renew/lock", "true"], check=False).returncode, "no lock")
+    def is_locked():
+        return subprocess.run(["flock", "-n", "maps/.renew/lock", "true"], check=False).returncode != 0
+    wait_until(is_locked, "no lock")
     fails("two runs at once", "another run")
     os.killpg(holder.pid, signal.SIGTERM)
     holder.wait()
+    wait_until(lambda: not is_locked(), "the lock stays")  # which sleep has, too
 
     # A pair of which only one can be replaced: neither is.
     os.makedirs("maps/dark.pmtiles/in the way")

@@ -75,6 +75,7 @@ typedef struct bench_frame_times {
     double frame_ms; /* from lines in memory, or the network on the device, to pixels in memory */
     double tessellate_ms;
     double draw_ms; /* clear, draw, finish */
+    double cpu_ms;  /* of the frame, on all threads */
 } bench_frame_times;
 
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times);
@@ -83,7 +84,7 @@ camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_ti
  * bench's own business, so the time of that is told, and left out. */
 typedef struct bench_taking {
     uint8_t *picture;
-    double kept_ms;
+    double kept_ms, kept_cpu_ms;
 } bench_taking;
 
 bool bench_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);

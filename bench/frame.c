@@ -56,9 +56,10 @@ void bench_close(bench *b) {
 
 bool bench_take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     bench_taking *t = user;
-    const double begin = camber_now_ms();
+    const double begin = camber_now_ms(), cpu_begin = camber_clock_ms(CLOCK_THREAD_CPUTIME_ID);
     memcpy(t->picture + 4 * (size_t)BENCH_SIDE_PX * first_row, rgba, 4 * (size_t)BENCH_SIDE_PX * row_count);
     t->kept_ms += camber_now_ms() - begin;
+    t->kept_cpu_ms += camber_clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu_begin;
     return true;
 }
 
@@ -115,12 +116,13 @@ static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times) {
     camber_frame_stats stats = {0};
     bench_taking t = {.picture = desc->picture};
-    const double begin = camber_now_ms();
+    const double begin = camber_now_ms(), cpu_begin = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
     camber_status status = tessellate(b, desc);
     times->tessellate_ms = camber_now_ms() - begin;
     if (status == CAMBER_OK)
         status = draw_mesh(b, desc, &t, &stats);
     times->frame_ms = camber_now_ms() - begin - t.kept_ms;
+    times->cpu_ms = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu_begin - t.kept_cpu_ms;
     times->draw_ms = stats.draw_ms;
     return status;
 }

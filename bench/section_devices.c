@@ -77,13 +77,11 @@ static camber_status measure_frame(devices *on, const char *key, const char *wha
         double first[2] = {0};
         for (size_t i = 0; i < on->count && status == CAMBER_OK; i++) {
             bench_frame_times times = {0};
-            const double begin = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID);
             status = bench_frame(&on->list[i].b, desc, &times);
-            const double cpu_ms = camber_clock_ms(CLOCK_PROCESS_CPUTIME_ID) - begin;
             if (i == 0)
-                first[0] = times.frame_ms, first[1] = cpu_ms;
+                first[0] = times.frame_ms, first[1] = times.cpu_ms;
             if (status == CAMBER_OK && run >= b->warm_ups)
-                add_run(all + i, times.frame_ms, cpu_ms, first);
+                add_run(all + i, times.frame_ms, times.cpu_ms, first);
         }
     }
     if (status != CAMBER_OK)

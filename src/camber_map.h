@@ -65,7 +65,9 @@ CAMBER_API uint32_t camber_style_get_effects(const camber_style *style, double z
  *
  * "openmaptiles" reads openmaptiles.mbtiles in the working folder, and "transit" transit.geojson there. */
 CAMBER_API const char *camber_style_list(size_t n);
-/* Returns the document of the style with that name, which the library owns; NULL: there is none. */
+/* Returns the document of the style with that name, which the library owns; NULL: there is none.
+ * "city-osm", which is not listed, is "city" without the layers for vector tiles. It draws the same of OpenStreetMap's
+ * extracts (camber_source_is_osm), and parsing it takes a third of the time and of the memory. */
 CAMBER_API const char *camber_style_get_text(const char *name, camber_theme theme, size_t *size_bytes);
 
 /* Compiles one expression, or a function of the older kind, and evaluates it for each input. An expression that does
@@ -230,6 +232,8 @@ CAMBER_API camber_status camber_features_restyle(camber_features *features, cons
 
 /* Returns whether camber_features_read needs GDAL for the file of this source. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
+/* Returns whether camber_features_read reads the file of this source as an OpenStreetMap PBF. */
+CAMBER_API bool camber_source_is_osm(const camber_source_desc *desc);
 /* Loads GDAL; without this call, reading the first file loads it.
  * Returns CAMBER_ERROR_IO (GDAL or camber's module for it is missing).
  * Cost: loading takes time once per process, and half as much again if threads of a device or a surface are already

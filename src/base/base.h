@@ -94,6 +94,9 @@ void camber_budget_give(camber_context *context, uint64_t size_bytes);
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes);
 /* Returns how many bytes the limit of the address space (ulimit -v) leaves; UINT64_MAX: there is no limit. */
 uint64_t camber_address_space_left(void);
+/* Returns how many bytes the memory limits of the process's control group and of the groups above it leave; UINT64_MAX:
+ * there is no limit. root is "" for the system's own files, or a folder that stands for /. */
+uint64_t camber_control_groups_left(const char *root);
 camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes);
 /* Checks that the process has enough address space for OpenCL's drivers. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_budget_check_drivers(camber_context *context);

@@ -70,26 +70,32 @@ static uint64_t smaller(uint64_t left, uint64_t right) {
     return left < right ? left : right;
 }
 
-/* Lowers *least to what a control group leaves free. */
+/* Lowers *least to what a control group leaves free. Without a limit, version 2 says "max", and version 1 names more
+ * than any machine has. */
 static void look_at_group(void *least, const char *folder) {
+    static const struct {
+        const char *most, *held, *kept;
+    } versions[] = {{"memory.max", "memory.current", "inactive_file"},
+                    {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"}};
     char path[4200];
-    uint64_t most, held = 0, kept = 0;
-    snprintf(path, sizeof path, "%s/memory.max", folder);
-    if (!read_number(path, "", &most))
-        return;
-    snprintf(path, sizeof path, "%s/memory.current", folder);
-    (void)read_number(path, "", &held);
-    /* The kernel gives up cached files when memory is needed, so they count as free. */
-    snprintf(path, sizeof path, "%s/memory.stat", folder);
-    (void)read_number(path, "inactive_file", &kept);
-    held = held > kept ? held - kept : 0;
-    *(uint64_t *)least = smaller(*(uint64_t *)least, most > held ? most - held : 0);
+    for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
+        uint64_t most, held = 0, kept = 0;
+        snprintf(path, sizeof path, "%s/%s", folder, versions[i].most);
+        if (!read_number(path, "", &most))
+            continue;
+        snprintf(path, sizeof path, "%s/%s", folder, versions[i].held);
+        (void)read_number(path, "", &held);
+        /* The kernel gives up cached files when memory is needed, so they count as free. */
+        snprintf(path, sizeof path, "%s/memory.stat", folder);
+        (void)read_number(path, versions[i].kept, &kept);
+        held = held > kept ? held - kept : 0;
+        *(uint64_t *)least = smaller(*(uint64_t *)least, most > held ? most - held : 0);
+    }
 }
 
-/* The memory that the control group of the process and the groups above it leave free. */
-static uint64_t group_free_bytes(void) {
+uint64_t camber_control_groups_left(const char *root) {
     uint64_t least = UINT64_MAX;
-    camber_control_group_visit("", "memory", look_at_group, &least);
+    camber_control_group_visit(root, "memory", look_at_group, &least);
     return least;
 }
 
@@ -113,7 +119,8 @@ static uint64_t machine_free_bytes(void) {
 }
 
 static void look_up(camber_budget *budget, uint64_t held_bytes) {
-    const uint64_t free_bytes = smaller(machine_free_bytes(), smaller(group_free_bytes(), camber_address_space_left()));
+    const uint64_t free_bytes =
+        smaller(machine_free_bytes(), smaller(camber_control_groups_left(""), camber_address_space_left()));
     uint64_t unknown = UINT64_MAX;
     atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
 }

@@ -16,6 +16,8 @@ extern const char camber_images_frag[], camber_count_frag[];
 extern const unsigned long camber_images_frag_size, camber_count_frag_size;
 extern const char camber_style_city_light[], camber_style_city_dark[]; /* src/style/ */
 extern const unsigned long camber_style_city_light_size, camber_style_city_dark_size;
+extern const char camber_style_city_osm_light[], camber_style_city_osm_dark[];
+extern const unsigned long camber_style_city_osm_light_size, camber_style_city_osm_dark_size;
 extern const char camber_style_roads_light[], camber_style_roads_dark[];
 extern const unsigned long camber_style_roads_light_size, camber_style_roads_dark_size;
 extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_dark[];

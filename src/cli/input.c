@@ -171,6 +171,16 @@ static int translate(camber_session *session, camber_style_input *document, char
     return camber_report_status(session->report, status);
 }
 
+/* The built-in style, or what it draws of extracts of OpenStreetMap if there is nothing else. */
+static const char *builtin_text(const camber_options *options, camber_theme theme, size_t *size_bytes) {
+    bool is_osm = options->input_count > 0;
+    for (size_t i = 0; is_osm && i < options->input_count; i++) {
+        const camber_source_desc desc = {.path = options->inputs[i], .layer = options->layer, .where = options->where};
+        is_osm = camber_source_is_osm(&desc);
+    }
+    return camber_style_get_text(is_osm ? "city-osm" : camber_style_list(0), theme, size_bytes);
+}
+
 int camber_input_make_style(camber_session *session, camber_theme theme, camber_style **style, const char **base_path) {
     const camber_options *options = session->options;
     camber_style_input document = {.name = "the built-in style"};
@@ -179,7 +189,7 @@ int camber_input_make_style(camber_session *session, camber_theme theme, camber_
     if (options->style)
         status = camber_input_read_style(session, options->style, theme, &document);
     else
-        document.text = camber_style_get_text(camber_style_list(0), theme, &document.size_bytes);
+        document.text = builtin_text(options, theme, &document.size_bytes);
     if (status == CAMBER_EXIT_DONE && camber_plain_is_given(options))
         status = camber_plain_apply(session, &document);
     if (status == CAMBER_EXIT_DONE && options->language)

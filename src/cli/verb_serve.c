@@ -119,7 +119,8 @@ static void set_heed(camber_session *session, wishes *w) {
     camber_guard_unlock(session->guard);
 }
 
-/* Whether the edited file has been saved since it was last checked. If it is missing or empty, it is just being saved. */
+/* Whether the edited file has been saved since it was last checked. One that is missing or empty is just being saved.
+ */
 static bool was_saved(wishes *w) {
     struct stat about;
     if (!w->edited || stat(w->edited, &about) != 0 || about.st_size == 0)

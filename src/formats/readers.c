@@ -26,6 +26,10 @@ bool camber_source_needs_gdal(const camber_source_desc *desc) {
     return find_reader(desc) == &camber_gdal_reader;
 }
 
+bool camber_source_is_osm(const camber_source_desc *desc) {
+    return find_reader(desc) == &camber_osm_reader;
+}
+
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
     camber_status status = CAMBER_OK;
     bool declined = true;

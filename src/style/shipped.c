@@ -24,12 +24,16 @@ static const shipped_style styles[] = {
     {"transit",
      {camber_style_transit_light, camber_style_transit_dark},
      {&camber_style_transit_light_size, &camber_style_transit_dark_size}},
+    /* Not listed, because it draws nothing that "city" does not draw. */
+    {"city-osm",
+     {camber_style_city_osm_light, camber_style_city_osm_dark},
+     {&camber_style_city_osm_light_size, &camber_style_city_osm_dark_size}},
 };
 
-enum { STYLES = sizeof styles / sizeof *styles };
+enum { STYLES = sizeof styles / sizeof *styles, LISTED_STYLES = STYLES - 1 };
 
 const char *camber_style_list(size_t n) {
-    return n < STYLES ? styles[n].name : NULL;
+    return n < LISTED_STYLES ? styles[n].name : NULL;
 }
 
 const char *camber_style_get_text(const char *name, camber_theme theme, size_t *size_bytes) {

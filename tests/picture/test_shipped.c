@@ -577,13 +577,30 @@ static void test_documents(void **state) {
     assert_null(camber_style_get_text("none", CAMBER_THEME_LIGHT, &size_bytes));
 }
 
+/* "city-osm" is "city" without the layers that name a layer of tiles. */
+static void test_without_tiles(void **state) {
+    (void)state;
+    for (int theme = 0; theme < 2; theme++) {
+        json_t *city = style_of("city", (camber_theme)theme), *osm = style_of("city-osm", (camber_theme)theme);
+        json_t *list = json_object_get(city, "layers");
+        const size_t all = json_array_size(list);
+        for (size_t i = all; i-- > 0;)
+            if (json_object_get(json_array_get(list, i), "source-layer"))
+                json_array_remove(list, i);
+        assert_true(json_array_size(list) > 50 && json_array_size(list) < all / 2);
+        assert_true(json_equal(city, osm));
+        json_decref(city);
+        json_decref(osm);
+    }
+}
+
 int main(void) {
     if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_documents),   cmocka_unit_test(test_layers), cmocka_unit_test(test_line_layers),
-        cmocka_unit_test(test_line_colors), cmocka_unit_test(test_slots),  cmocka_unit_test(test_crossings),
-        cmocka_unit_test(test_widths),      cmocka_unit_test(test_file),
+        cmocka_unit_test(test_documents),   cmocka_unit_test(test_without_tiles), cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_line_layers), cmocka_unit_test(test_line_colors),   cmocka_unit_test(test_slots),
+        cmocka_unit_test(test_crossings),   cmocka_unit_test(test_widths),        cmocka_unit_test(test_file),
     };
     const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;

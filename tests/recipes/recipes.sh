@@ -10,6 +10,8 @@
 #       wheel                    Python's wheel, made in Debian 11 into the build folder, as its archive of sources is; in each
 #                                system (bullseye, bookworm, trixie and noble) a user without a compiler installs it and
 #                                draws with it what the build folder's tool draws, byte for byte
+#       devices                  no test: frames of the back end cpu beside the system's PoCL, in the processor's own code and
+#                                in AVX2 code (docs/benchmarks.md). Cities need CAMBER_DATA; trixie has PoCL 6
 #
 # A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
 # whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and the system's mirror; ends with
@@ -48,6 +50,7 @@ mount_root() {
     mount --bind "$objects" "$root/kept/objects"
     mount --bind "$kept/$1.pocl" "$root/kept/pocl"
     mount --bind "$kept/wheel" "$root/kept/wheel"
+    [ -z "${CAMBER_DATA:-}" ] || { mkdir "$root/kept/data" && mount --bind "$CAMBER_DATA" "$root/kept/data"; }
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
     cp -L /etc/ssl/certs/ca-certificates.crt "$root/kept/certificates" # npm's registry is trusted as it is here
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/fresh" # nothing of it outlives this run
@@ -62,7 +65,7 @@ in_root() {
     chroot "$2/root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
         DEBIAN_FRONTEND=noninteractive CAMBER_URL=/checkout CMAKE_C_COMPILER_LAUNCHER=ccache CCACHE_DIR=/kept/objects \
         CCACHE_UMASK=000 CCACHE_NOHASHDIR=1 CCACHE_BASEDIR=/root/here POCL_CACHE_DIR=/kept/pocl \
-        npm_config_cafile=/kept/certificates \
+        npm_config_cafile=/kept/certificates ${CAMBER_DATA:+CAMBER_DATA=/kept/data} \
         bash -c 'cd /root/here && exec bash -eux /script.sh'
 }
 
@@ -204,6 +207,13 @@ CLONE
         # The build folder's tool drew the same; without one there is nothing to compare with.
         echo '[ ! -d /checkout/expected ] || for picture in /checkout/expected/*.png; do cmp "$picture" "/home/traveller/drawn/${picture##*/}"; done'
         ;;
+    devices)
+        echo 'cp -a /checkout camber && cd camber'
+        echo 'eval "$(sed "/^case \"\${1:-help}\"/,\$d; /^cd /d" dev)" && install_packages "${PACKAGES_BUILD[@]}" "${PACKAGES_GL[@]}" pocl-opencl-icd ocl-icd-libopencl1 g++'
+        echo 'configure build && compile build camber_bench'
+        echo 'build/bench/camber_bench --section devices >/checkout/devices'
+        echo 'CAMBER_CPU=x86-64-v3 POCL_KERNELLIB_NAME=avx2 build/bench/camber_bench --section devices >>/checkout/devices'
+        ;;
     *) echo "no recipe $1" >&2; exit 2 ;;
     esac
 }
@@ -304,9 +314,10 @@ for system; do
         continue
     fi
     { [ "$recipe" = newcomer ] || without_sudo && script_of "$recipe" "$system"; } >"$run/$recipe"
-    if { [[ $recipe = @(packages|newcomer|wheel) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
+    if { [[ $recipe = @(packages|newcomer|wheel|devices) ]] || [ "$(block "$recipe" | wc -l)" != 0 ]; } &&
         inside in_root "$system" "$run/$system.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
         grep -E '^[0-9]+% tests passed|^skipped, and why|^  test_.*: ' "$run/log" || true
+        [ "$recipe" != devices ] || cat "$run/checkout/devices"
         echo "$system: $recipe: works, $((SECONDS - begun)) s"
     else
         failures=$((failures + 1))

@@ -417,6 +417,11 @@ expect 0 "a number has a shield, a name has none" render "$tmp/in/refs.geojson" 
     --zoom 13 --size 300x300 -o refs.png -v
 says ' 1 label,'
 rm -f refs.png
+monaco=$here/data/monaco/monaco.osm.pbf
+expect 0 "an extract in the built-in style" render "$monaco" -o extract.png --size 300x300
+expect 0 "an extract in the style city" render "$monaco" -o by_name.png --size 300x300 --style city # another document
+cmp -s extract.png by_name.png || fail "the styles differ"
+rm -f extract.png by_name.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))
@@ -743,11 +748,11 @@ expect 0 "validate a map" validate -v "$tiger" --method kite --size 100x100 --wi
 passes 40
 has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
-expect 0 "validate a map's areas" validate -v "$here/data/monaco/monaco.osm.pbf" --method strip --size 300x300 --windows 8
+expect 0 "validate a map's areas" validate -v "$monaco" --method strip --size 300x300 --windows 8
 passes 60
 has "$tmp/stdout" ': as styled, areas and lines: drawn as by the CPU twin, on ' ': layer 1 of areas: strip, filled: pixels, on .*, OpenCL$' \
     ': layer 5 of areas: strip, filled: pixels, on .*, EGL$' '^# .* pixels: mean '
-expect 0 "validate a style of lines alone" validate -v "$here/data/monaco/monaco.osm.pbf" --style roads --method strip --size 100x100 --draw cl
+expect 0 "validate a style of lines alone" validate -v "$monaco" --style roads --method strip --size 100x100 --draw cl
 lacks "$tmp/stdout" 'of areas\|as styled, areas'
 expect 0 "validate what kernels draw" validate -v --polylines "$lines" --size 256x256 --draw cl --only pixels --windows 8
 passes 3

@@ -74,6 +74,39 @@ static void test_machine(void **state) {
     camber_budget_destroy(budget);
 }
 
+/* The memory limits of control groups leave what the group does not use yet, or only for cached files. */
+static void test_groups(void **state) {
+    (void)state;
+    static const char unlimited[] = "9223372036854771712\n"; /* as version 1 writes it */
+    char root[64];
+    folder_make(root);
+    assert_true(camber_control_groups_left(root) == UINT64_MAX); /* no control group */
+    folder_write(root, "proc/self/cgroup", "0::/app/worker\n");
+    folder_write(root, "sys/fs/cgroup/app/worker/memory.max", "max\n");
+    assert_true(camber_control_groups_left(root) == UINT64_MAX);
+    folder_write(root, "sys/fs/cgroup/app/worker/memory.max", "1000\n");
+    assert_int_equal(camber_control_groups_left(root), 1000);
+    folder_write(root, "sys/fs/cgroup/app/worker/memory.current", "700\n");
+    folder_write(root, "sys/fs/cgroup/app/worker/memory.stat", "file 600\ninactive_file 200\n");
+    assert_int_equal(camber_control_groups_left(root), 500);
+    folder_write(root, "sys/fs/cgroup/app/memory.max", "400\n");
+    assert_int_equal(camber_control_groups_left(root), 400);
+    folder_write(root, "sys/fs/cgroup/app/memory.current", "900\n");
+    assert_int_equal(camber_control_groups_left(root), 0);
+
+    folder_write(root, "proc/self/cgroup", "5:cpu:/\n4:memory:/docker/0123\n0::/\n");
+    assert_true(camber_control_groups_left(root) == UINT64_MAX);
+    folder_write(root, "sys/fs/cgroup/memory/memory.limit_in_bytes", unlimited);
+    assert_int_equal(camber_control_groups_left(root), INT64_C(9223372036854771712));
+    folder_write(root, "sys/fs/cgroup/memory/memory.limit_in_bytes", "2000\n");
+    folder_write(root, "sys/fs/cgroup/memory/memory.usage_in_bytes", "1500\n");
+    folder_write(root, "sys/fs/cgroup/memory/memory.stat", "inactive_file 0\ntotal_inactive_file 300\n");
+    assert_int_equal(camber_control_groups_left(root), 800);
+    folder_write(root, "proc/self/cgroup", "4:cpu:/\n"); /* of another controller */
+    assert_true(camber_control_groups_left(root) == UINT64_MAX);
+    folder_remove(root);
+}
+
 /* ---- Reading one set ---- */
 
 static void test_reading(void **state) {
@@ -200,8 +233,9 @@ static void test_output(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory), cmocka_unit_test(test_machine), cmocka_unit_test(test_reading),
-        cmocka_unit_test(test_kinds),  cmocka_unit_test(test_root),    cmocka_unit_test(test_output),
+        cmocka_unit_test(test_memory),  cmocka_unit_test(test_machine), cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_reading), cmocka_unit_test(test_kinds),   cmocka_unit_test(test_root),
+        cmocka_unit_test(test_output),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

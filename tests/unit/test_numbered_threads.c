@@ -9,7 +9,6 @@
 #include <errno.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <sys/stat.h>
 
 static int allowed;
 
@@ -102,42 +101,28 @@ static void test_affinity(void **state) {
     assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
 }
 
-static void write_in(const char *root, const char *path, const char *text) {
-    char name[1024];
-    snprintf(name, sizeof name, "%s/%s", root, path);
-    for (char *slash = strchr(name + strlen(root) + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = 0;
-        (void)mkdir(name, 0755);
-        *slash = '/';
-    }
-    FILE *file = fopen(name, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* The quota of a container's control group, or of one above it, limits threads as affinity does. */
 static void test_quota(void **state) {
     (void)state;
     char root[64];
     folder_make(root);
     assert_true(camber_cores_paid(root) == SIZE_MAX); /* no control group */
-    write_in(root, "proc/self/cgroup", "1:name=systemd:/other\n0::/app/worker\n");
+    folder_write(root, "proc/self/cgroup", "1:name=systemd:/other\n0::/app/worker\n");
     assert_true(camber_cores_paid(root) == SIZE_MAX); /* no limit */
-    write_in(root, "sys/fs/cgroup/app/worker/cpu.max", "max 100000\n");
+    folder_write(root, "sys/fs/cgroup/app/worker/cpu.max", "max 100000\n");
     assert_true(camber_cores_paid(root) == SIZE_MAX);
-    write_in(root, "sys/fs/cgroup/app/worker/cpu.max", "350000 100000\n");
+    folder_write(root, "sys/fs/cgroup/app/worker/cpu.max", "350000 100000\n");
     assert_int_equal(camber_cores_paid(root), 4);
-    write_in(root, "sys/fs/cgroup/app/cpu.max", "50000 100000\n");
+    folder_write(root, "sys/fs/cgroup/app/cpu.max", "50000 100000\n");
     assert_int_equal(camber_cores_paid(root), 1);
     static const char *const others[] = {"no quota\n", "",        "0 100000\n",
                                          "50000 0\n",  "50000\n", "99999999999999999999999999 1\n"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        write_in(root, "sys/fs/cgroup/app/cpu.max", others[i]);
+        folder_write(root, "sys/fs/cgroup/app/cpu.max", others[i]);
         assert_int_equal(camber_cores_paid(root), 4);
     }
-    write_in(root, "proc/self/cgroup", "0::/\n"); /* as inside of a container */
-    write_in(root, "sys/fs/cgroup/cpu.max", "200000 100000\n");
+    folder_write(root, "proc/self/cgroup", "0::/\n"); /* as inside of a container */
+    folder_write(root, "sys/fs/cgroup/cpu.max", "200000 100000\n");
     assert_int_equal(camber_cores_paid(root), 2);
     folder_remove(root);
 }
@@ -157,16 +142,16 @@ static void test_quota_of_version_1(void **state) {
                  {"cpu:/app/worker\n1:cpu\n\n", "150000\n", SIZE_MAX}};
     char root[64];
     folder_make(root);
-    write_in(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_period_us", "100000\n");
+    folder_write(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_period_us", "100000\n");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        write_in(root, "proc/self/cgroup", cases[i].groups);
-        write_in(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_quota_us", cases[i].quota);
+        folder_write(root, "proc/self/cgroup", cases[i].groups);
+        folder_write(root, "sys/fs/cgroup/cpu/app/worker/cpu.cfs_quota_us", cases[i].quota);
         assert_int_equal(camber_cores_paid(root), cases[i].paid);
     }
     /* A container sees its group as the first, but the path of the host. */
-    write_in(root, "proc/self/cgroup", "3:cpu,cpuacct:/docker/0123\n");
-    write_in(root, "sys/fs/cgroup/cpu/cpu.cfs_quota_us", "250000\n");
-    write_in(root, "sys/fs/cgroup/cpu/cpu.cfs_period_us", "50000\n");
+    folder_write(root, "proc/self/cgroup", "3:cpu,cpuacct:/docker/0123\n");
+    folder_write(root, "sys/fs/cgroup/cpu/cpu.cfs_quota_us", "250000\n");
+    folder_write(root, "sys/fs/cgroup/cpu/cpu.cfs_period_us", "50000\n");
     assert_int_equal(camber_cores_paid(root), 5);
     folder_remove(root);
 }

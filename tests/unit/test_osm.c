@@ -401,13 +401,12 @@ static void test_declined(void **state) {
     WAY(it, street, -5, -4);
     (void)finish(it, false);
     /* Another layer, no PBF, a file that is not there. */
-    assert_false(camber_reader_takes(&camber_osm_reader,
-                                     &(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
-    assert_true(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .layer = "lines"}));
-    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
-    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = "/tmp"}));
+    assert_false(camber_source_is_osm(&(camber_source_desc){.path = it->on.path, .layer = "multilinestrings"}));
+    assert_true(camber_source_is_osm(&(camber_source_desc){.path = it->on.path, .layer = "lines"}));
+    assert_false(camber_source_is_osm(&(camber_source_desc){.path = "/no/such/file.osm.pbf"}));
+    assert_false(camber_source_is_osm(&(camber_source_desc){.path = "/tmp"}));
     write_file(&it->on, "file", "<osm version=\"0.6\"></osm>", 25);
-    assert_false(camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path}));
+    assert_false(camber_source_is_osm(&(camber_source_desc){.path = it->on.path}));
 }
 
 /* Filters that this reader knows, and those that it leaves to GDAL, which says what is wrong with the last. */
@@ -437,9 +436,8 @@ static void test_filters(void **state) {
         assert_true(finish(it, true) > 0);
     }
     for (size_t i = 0; i < sizeof left / sizeof *left; i++)
-        assert_false(
-            camber_reader_takes(&camber_osm_reader, &(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
-            strcmp(left[i], "HIGHWAY = 'primary'") != 0);
+        assert_false(camber_source_is_osm(&(camber_source_desc){.path = it->on.path, .where = left[i]}) &&
+                     strcmp(left[i], "HIGHWAY = 'primary'") != 0);
     /* Keys that differ in case alone, and a filter that nothing passes: GDAL warns of that. */
     it->where = "HIGHWAY = 'primary'";
     (void)finish(it, false);

@@ -249,7 +249,7 @@ static void test_archives(void **state) {
         assert_int_equal(camber_style_create_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
         assert_int_equal(camber_features_create(it->context, it->style, &it->features), CAMBER_OK);
         const camber_source_desc desc = {.path = in_folder(it, i ? "a.pmtiles" : "a.mbtiles", path)};
-        assert_false(camber_source_needs_gdal(&desc));
+        assert_false(camber_source_needs_gdal(&desc) || camber_source_is_osm(&desc));
         expect_ok(it, camber_features_read(it->features, &desc));
         expect_units(it, 0, 8192, 4, BENT_UNITS);
         expect_attribution(it, i ? NULL : "Tiles");

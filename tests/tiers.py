@@ -9,8 +9,8 @@ A test covers the layers that its labels name and those below them, by the arrow
 src/CMakeLists.txt. A change runs
   - the tests of ./dev test whose layers it reaches;
   - of all the others one share of seven, which the number of the commit picks, so that each runs within seven commits;
-  - in what this leaves of the time, mutants of the files that changed, and the tests under the sanitizers and the deep
-    ones that name a changed layer, the cheapest first. Those that find no time wait for their share: a change of
+  - in what this leaves of the time, mutants of the files that changed, then the tests under the sanitizers and the deep
+    ones that name a changed layer or recipe, the cheapest first. Those that find no time wait for their share: a change of
     everything takes no longer than one of a kernel.
 A commit of documents alone does not count and has no share: it cannot break what others test.
 
@@ -38,9 +38,13 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
 DEFAULT_COST = 1.0
-# Seconds of a processor, as costs are: of two processors for 25 minutes without what lint and the build take, or for 16 if
-# a change reaches less than half of ./dev test; and what there is in any case for what names a changed layer.
-SECONDS, SECONDS_OF_LITTLE, LEAST_SECONDS = 3000.0 - 400.0, 1920.0 - 250.0, 300.0
+# A change has so many minutes of two processors, lint and the build included: one of a kernel, or whatever else reaches
+# nearly all of ./dev test; one of less, such as a reader or the server; one of documents alone.
+GOAL_MINUTES, GOAL_MINUTES_OF_LITTLE, GOAL_MINUTES_OF_DOCUMENTS = 25.0, 16.0, 5.0
+MINUTES_BEFORE_TESTS, MINUTES_BEFORE_FEW_TESTS = 2.7, 1.8
+BUSY = 1.9  # of two processors: three tests run at a time, and some wait
+# Seconds of a processor, as costs are, that there are in any case for what names a changed layer.
+LEAST_SECONDS = 220.0
 SECONDS_A_MUTANT, TIMES_UNDER_SANITIZERS = 7.0, 4.0
 
 Test = collections.namedtuple("Test", "name cost fixture is_setup labels")
@@ -214,7 +218,7 @@ def assign_shares(tests):
 
 # ---- Choosing ----
 
-Choice = collections.namedtuple("Choice", "areas reached share waiting sanitized lint")
+Choice = collections.namedtuple("Choice", "areas reached share waiting sanitized lint minutes goal")
 
 
 def count_mutants(root, changed):
@@ -225,19 +229,37 @@ def count_mutants(root, changed):
         return sum(name in changed for name in re.findall(r"^mutant \w+ (\S+) ", file.read(), re.M))
 
 
+def is_of_little(tests, reached):
+    """Whether a change reaches less than three quarters of ./dev test."""
+    everyday = [test for test in tests if test.labels[0] in EVERYDAY]
+    return sum(test.cost for test in everyday if test.name in reached) < 0.75 * sum(test.cost for test in everyday)
+
+
+Pace = collections.namedtuple("Pace", "goal before busy")  # minutes; minutes before the tests; processors that are busy
+
+
+def pace_of(tests, reached, number):
+    if number is None:
+        return Pace(GOAL_MINUTES_OF_DOCUMENTS, MINUTES_BEFORE_FEW_TESTS, 1.0)  # recipes wait for each other
+    if is_of_little(tests, reached):
+        return Pace(GOAL_MINUTES_OF_LITTLE, MINUTES_BEFORE_FEW_TESTS, BUSY)
+    return Pace(GOAL_MINUTES, MINUTES_BEFORE_TESTS, BUSY)
+
+
 class Budget:
     """The seconds of a change that its tests of ./dev test and its share leave for what names a changed layer."""
 
-    def __init__(self, tests, reached, due):
-        self.builds = build_costs(tests)
-        everyday = sum(test.cost for test in tests if test.labels[0] in EVERYDAY)
-        spent = sum(test.cost for test in tests if test.name in reached)
-        limit = SECONDS if 2 * spent > everyday else SECONDS_OF_LITTLE
-        self.left = limit - spent
+    def __init__(self, tests, reached, due, number):
+        self.builds, self.spent, self.pace = build_costs(tests), 0.0, pace_of(tests, reached, number)
         for test in tests:
-            if test.name in due:
-                self.left -= test.cost + self.build(test.fixture)
-        self.left = max(self.left, LEAST_SECONDS)
+            if test.name in reached | due:
+                self.spent += test.cost + self.build(test.fixture)
+        self.left = 60 * self.pace.busy * (self.pace.goal - self.pace.before) - self.spent
+        if number is not None:
+            self.left = max(self.left, LEAST_SECONDS)
+
+    def minutes(self):
+        return self.pace.before + self.spent / self.pace.busy / 60
 
     def build(self, fixture):
         """What is to be built for it, once."""
@@ -247,7 +269,8 @@ class Budget:
         """Whether so much is left; then it is taken."""
         if seconds == 0 or seconds + self.builds.get(fixture, 0.0) > self.left:
             return False
-        self.left -= seconds + self.build(fixture)
+        taken = seconds + self.build(fixture)
+        self.left, self.spent = self.left - taken, self.spent + taken
         return True
 
     def take_cheapest(self, tests, fixture=None, times=1.0):
@@ -275,26 +298,27 @@ def choose(root, tests, changed, number, recipes=()):
             covered = set().union(*map(arrows.covered, named))
             is_reached = (label == "tree" or "build" in areas or covered & areas or is_named_after(test.name, stems) or
                           label == "tool" and "cli" in areas)
-        elif label == "recipes":
-            is_reached = bool(named & {"recipe-" + name for name in recipes})
         else:
             is_reached = False
-        if direct and label not in EVERYDAY and not is_reached and not part_of(test):
+            direct = direct or bool(named & {"recipe-" + name for name in recipes})
+        if direct and label not in EVERYDAY and not part_of(test):
             deep.append(test)
         if is_reached:
             reached.add(test.name)
     due = set() if number is None else {name for name in set(shares) - reached if shares[name] == number % SHARES}
-    budget = Budget(tests, reached, due)
+    budget = Budget(tests, reached, due, number)
+    told = {"test_recipe_" + name for name in recipes}
+    reached |= budget.take_cheapest([test for test in deep if test.name in told - due])
     if budget.take(count_mutants(root, changed) * SECONDS_A_MUTANT, "mutations"):
         reached.add("mutations_changed")
-    reached |= budget.take_cheapest([test for test in deep if test.name not in due])
     sanitized = budget.take_cheapest(sanitized, "sanitize", TIMES_UNDER_SANITIZERS)
     if sanitized:
         reached.add("sanitize_changed")
+    reached |= budget.take_cheapest([test for test in deep if test.name not in due | reached])
     waiting, share = collections.defaultdict(list), due - reached
     for name in sorted(set(shares) - reached - share):
         waiting[None if number is None else (shares[name] - number) % SHARES].append(name)
-    return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed))
+    return Choice(areas, reached, share, waiting, sanitized, lint_targets(root, changed), budget.minutes(), budget.pace.goal)
 
 
 def lint_targets(root, changed):
@@ -393,7 +417,8 @@ def find_change(root):
 
 def report(choice, number, line):
     lines = [line + (": " + ", ".join(sorted(choice.areas)) if choice.areas else "")]
-    lines.append("runs what the change reaches: %d tests" % len(choice.reached))
+    lines.append("runs what the change reaches: %d tests; with its share about %.0f minutes of two processors, where %.0f are the goal" %
+                 (len(choice.reached), choice.minutes, choice.goal))
     if number is None:
         lines.append("runs no share of the others: documents alone have changed; %d wait" % sum(map(len, choice.waiting.values())))
         return lines

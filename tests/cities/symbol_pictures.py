@@ -113,17 +113,32 @@ def unfilter(kind, row, above, channels):
         return row + above
     if kind == 1:
         return np.cumsum(row.reshape(-1, channels), axis=0, dtype=np.uint8).reshape(-1)
-    out, above = bytearray(len(row)), above.tolist()
-    for i, value in enumerate(row.tolist()):
-        left = out[i - channels] if i >= channels else 0
-        up = above[i]
+    out = np.empty_like(row)
+    for c in range(channels):
+        out[c::channels] = unfilter_channel(kind, row[c::channels], above[c::channels])
+    return out
+
+
+def unfilter_channel(kind, row, above):
+    """Averages (3) or Paeth's guesses (4). Nearly all of a picture is paper, where each byte is the one to its left: only
+    edges are looked at one by one."""
+    corner = np.concatenate([np.zeros(1, np.uint8), above[:-1]])
+    edges = np.flatnonzero((row != 0) | (above != corner)).tolist() + [len(row)]
+    out, row, above, corner = bytearray(len(row)), row.tolist(), above.tolist(), corner.tolist()
+    i = left = edge = 0
+    while i < len(row):
+        if i < edges[edge] and (kind == 4 or left == above[i]):
+            out[i : edges[edge]] = bytes([left]) * (edges[edge] - i)
+            i = edges[edge]
+            continue
         if kind == 3:
-            guess = (left + up) // 2
+            guess = (left + above[i]) // 2
         else:
-            corner = above[i - channels] if i >= channels else 0
-            near = left + up - corner
-            guess = min((abs(near - left), 0, left), (abs(near - up), 1, up), (abs(near - corner), 2, corner))[2]
-        out[i] = (value + guess) & 255
+            near = left + above[i] - corner[i]
+            guess = min((abs(near - left), 0, left), (abs(near - above[i]), 1, above[i]), (abs(near - corner[i]), 2, corner[i]))[2]
+        out[i] = left = (row[i] + guess) & 255
+        edge += i == edges[edge]
+        i += 1
     return np.frombuffer(bytes(out), np.uint8)
 
 

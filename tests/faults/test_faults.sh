@@ -194,6 +194,7 @@ if [ -n "$tool_fault" ]; then
     mkfifo "$tmp/wait"
     LD_PRELOAD=$tool_fault CAMBER_FAULT=pthread_create:1+ "$tool" render - -qo a.png <"$tmp/wait" 2>/dev/null &
     exec 3>"$tmp/wait"
+    while [ "/proc/$!/exe" -ef "$BASH" ]; do :; done # which would tidy up if the signal reached it
     sleep 0.5
     kill -TERM $!
     wait $!

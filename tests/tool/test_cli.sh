@@ -541,54 +541,63 @@ rm -f lines.bin again.bin lines.png
 
 # value NAME...: what stands at a path in the JSON on standard output.
 value() {
-    python3 -c 'import json, sys
+    python3 -IS -c 'import json, sys
 at = json.load(open(sys.argv[1]))
 for step in sys.argv[2:]:
     at = at[int(step)] if isinstance(at, list) else at[step]
 print(len(at) if isinstance(at, list) else at)' "$tmp/stdout" "$@" 2>/dev/null
 }
 
-# holds EXPRESSION: of the JSON on standard output as j, its networks as n, their average as a.
+# holds EXPRESSION...: of the JSON on standard output as j, its networks as n, their average as a. One Python for all of them.
 holds() {
-    python3 -c 'import json, sys
+    local not
+    not=$(python3 -IS -c 'import json, sys
 j = json.load(open(sys.argv[1])); n = j["networks"]; a = j["average"]
-sys.exit(not eval(sys.argv[2]))' "$tmp/stdout" "$1" 2>"$tmp/why" || fail "not so: $1 $(tail -1 "$tmp/why")"
+for text in sys.argv[2:]:
+    try:
+        so, why = eval(text), ""
+    except Exception as error:
+        so, why = False, repr(error)
+    if not so:
+        print("not so:", text, why)' "$tmp/stdout" "$@" 2>&1)
+    [ -z "$not" ] || fail "$not"
 }
 
 small=(--runs 1 --size 96x96)
 filters=(--where "type = 'primary'" --where "type IN ('primary', 'secondary')")
 expect 0 "compare two networks" compare "$osm" "${filters[@]}" "${small[@]}" --json
 if command -v python3 >/dev/null; then
-    holds 'len(n) == 2 and n[0]["name"] == "type = '"'primary'"'"'
+    so=('len(n) == 2 and n[0]["name"] == "type = '"'primary'"'"')
     for member in polylines segments joins tight_joins split_joins; do
-        holds "0 < n[0]['$member'] < n[1]['$member'] or '$member' == 'split_joins'"
-        holds "abs(a['$member'] - (n[0]['$member'] + n[1]['$member']) / 2) < 1e-9"
+        so+=("0 < n[0]['$member'] < n[1]['$member'] or '$member' == 'split_joins'"
+            "abs(a['$member'] - (n[0]['$member'] + n[1]['$member']) / 2) < 1e-9")
     done
-    holds 'all(sum(r["joins_by_turn_deg"].values()) == r["joins"] and len(r["joins_by_turn_deg"]) == 6 for r in n)'
+    so+=('all(sum(r["joins_by_turn_deg"].values()) == r["joins"] and len(r["joins_by_turn_deg"]) == 6 for r in n)')
     for member in repeated_at_plain_joins repeated_at_tight_joins repeated_at_split_joins repeated_elsewhere; do
-        holds "all('$member' in r['methods'][m] for r in n for m in r['methods'])"
+        so+=("all('$member' in r['methods'][m] for r in n for m in r['methods'])")
     done
     for member in vertices triangles bytes draw_calls_16_bit draw_calls fragments drawn_pixels repeated_pixels \
         mean_error max_error tessellate_ms draw_ms; do
-        holds "all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))"
-        holds "abs(j['ratio_to_kite']['fan']['$member'] * a['methods']['kite']['$member'] /
+        so+=("all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))"
+            "abs(j['ratio_to_kite']['fan']['$member'] * a['methods']['kite']['$member'] /
             a['methods']['fan']['$member'] - 1) < 1e-2 + ('$member'.endswith('_ms') and # rounded to a microsecond
-            5e-4 / a['methods']['kite']['$member'] + 5e-4 / a['methods']['fan']['$member'])"
+            5e-4 / a['methods']['kite']['$member'] + 5e-4 / a['methods']['fan']['$member'])")
     done
     # Two triangles a segment and none a join, at most; a fan and a kite have joins of their own.
-    holds 'all(r["methods"]["strip"]["triangles"] <= 2 * r["segments"] for r in n)'
-    holds 'all(r["methods"]["kite"]["triangles"] >= 2 * r["segments"] + 2 * r["joins"] for r in n)'
-    holds 'all(r["methods"][m]["fragments"] >= r["methods"][m]["drawn_pixels"] > r["methods"][m]["repeated_pixels"]
-        for r in n for m in r["methods"])'
+    so+=('all(r["methods"]["strip"]["triangles"] <= 2 * r["segments"] for r in n)'
+        'all(r["methods"]["kite"]["triangles"] >= 2 * r["segments"] + 2 * r["joins"] for r in n)'
+        'all(r["methods"][m]["fragments"] >= r["methods"][m]["drawn_pixels"] > r["methods"][m]["repeated_pixels"]
+        for r in n for m in r["methods"])')
     # Neighbouring segments of kite and strip draw a pixel once wherever their join has room; bodies of a fan do not.
-    holds 'all(r["methods"][m]["repeated_at_plain_joins"] == 0 for r in n for m in ("kite", "strip"))'
-    holds 'all(r["methods"]["fan"]["repeated_at_plain_joins"] > 0 for r in n)'
-    holds 'j["ratio_to_kite"]["fan"]["repeated_at_plain_joins"] is None'
+    so+=('all(r["methods"][m]["repeated_at_plain_joins"] == 0 for r in n for m in ("kite", "strip"))'
+        'all(r["methods"]["fan"]["repeated_at_plain_joins"] > 0 for r in n)'
+        'j["ratio_to_kite"]["fan"]["repeated_at_plain_joins"] is None')
     # Lines cover the same pixels whatever draws them, and no pixel is off by more than all of it.
-    holds 'all(abs(r["methods"][m]["drawn_pixels"] / r["methods"]["strip"]["drawn_pixels"] - 1) < 0.02
+    so+=('all(abs(r["methods"][m]["drawn_pixels"] / r["methods"]["strip"]["drawn_pixels"] - 1) < 0.02
         for r in n for m in r["methods"])'
-    holds 'all(r["methods"][m]["mean_error"] < 10 and r["methods"][m]["max_error"] <= 255
-        for r in n for m in r["methods"])'
+        'all(r["methods"][m]["mean_error"] < 10 and r["methods"][m]["max_error"] <= 255
+        for r in n for m in r["methods"])')
+    holds "${so[@]}"
     # The view is that of both networks together, also for the first, which reaches less far.
     cp "$tmp/stdout" "$tmp/in/both.json"
     both=$(value zoom)
@@ -614,16 +623,16 @@ if command -v python3 >/dev/null; then
     says '^camber: warning: '
     # Kernels have no fragments and no draw calls; they draw any mesh alike, and what they draw is held to the truth.
     expect 0 "compare in OpenCL" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json --draw cl
-    holds 'j["draw"] == "cl" and j["draw_reason"] == "asked for" and j["gl_renderer"] is None'
+    so=('j["draw"] == "cl" and j["draw_reason"] == "asked for" and j["gl_renderer"] is None')
     for member in draw_calls draw_calls_16_bit fragments drawn_pixels repeated_pixels repeated_at_plain_joins \
         repeated_at_tight_joins repeated_at_split_joins repeated_elsewhere; do
-        holds "all(r['methods'][m]['$member'] is None for r in n + [a] for m in r['methods'])"
-        holds "j['ratio_to_kite']['fan']['$member'] is None"
+        so+=("all(r['methods'][m]['$member'] is None for r in n + [a] for m in r['methods'])"
+            "j['ratio_to_kite']['fan']['$member'] is None")
     done
     for member in vertices triangles bytes mean_error max_error tessellate_ms draw_ms; do
-        holds "all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))"
+        so+=("all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))")
     done
-    holds 'all(r["methods"][m]["mean_error"] < 10 for r in n for m in r["methods"])'
+    holds "${so[@]}" 'all(r["methods"][m]["mean_error"] < 10 for r in n for m in r["methods"])'
     run "${without_gl[@]}" "$tool" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json
     name="compare without GL"
     verify 0
@@ -1302,6 +1311,10 @@ done
 set -m
 ulimit -c 0
 mkfifo "$tmp/in/fifo"
+# Until the job is the tool: a shell would remove $tmp if the signal reached it before.
+await_tool() {
+    while [ "/proc/$job/exe" -ef "$BASH" ]; do :; done
+}
 # Starts the tool on standard input that does not end: OUT and the copy have been begun. job is its number.
 begin() { # COMMAND...
     "$@" "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
@@ -1348,6 +1361,7 @@ for delay in 0 0.02 0.05 0.1 0.2; do
     "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
     job=$!
     exec 3>"$tmp/in/fifo"
+    await_tool
     sleep $delay
     kill -HUP $job
     ended 129
@@ -1386,7 +1400,7 @@ name="SIGINT in the middle"
 for delay in 0.02 0.05 0.1 0.15 0.2 0.3 0.5; do
     "$tool" render "$osm" -o a.png --size 4000x4000 2>"$tmp/stderr" &
     job=$!
-    while [ "/proc/$job/exe" -ef "$BASH" ]; do :; done # which would remove $tmp if the signal reached it
+    await_tool
     sleep $delay
     kill -INT $job 2>/dev/null
     wait $job

@@ -85,7 +85,7 @@ class Job:
         self.server = None
         self.environment = {
             **os.environ, "CAMBER": TOOL, "CAMBER_SOURCE": f"http://127.0.0.1:{self.source.server_port}/city.json",
-            "CAMBER_ARCHIVE": os.path.abspath("maps/city.pmtiles"), "CAMBER_WAIT": "30",
+            "CAMBER_ARCHIVE": os.path.abspath("maps/city.pmtiles"), "CAMBER_WAIT": str(PATIENCE_S),
             "CAMBER_TILES": f"--min-zoom {ZOOM - 1} --max-zoom {ZOOM} --tile-size 256", "CAMBER_CACHE": os.path.abspath("kept"),
             "no_proxy": "127.0.0.1"}
 
@@ -254,11 +254,14 @@ def test_failures():
     os.chmod("broken", 0o755)
     fails("a broken archive", "is damaged", CAMBER=os.path.abspath("broken"))
     fails("a wrong option", "drawing", CAMBER_TILES="--none")
-    holder = subprocess.Popen(["flock", "maps/.renew/lock", "sleep", "100"], start_new_session=True)
-    wait_until(lambda: subprocess.run(["flock", "-n", "maps/.renew/lock", "true"], check=False).returncode, "no lock")
+    holder = subprocess.Popen(["flock", "maps/.renew/lock", "sleep", "infinity"], start_new_session=True)
+    def is_locked():
+        return subprocess.run(["flock", "-n", "maps/.renew/lock", "true"], check=False).returncode != 0
+    wait_until(is_locked, "no lock")
     fails("two runs at once", "another run")
     os.killpg(holder.pid, signal.SIGTERM)
     holder.wait()
+    wait_until(lambda: not is_locked(), "the lock stays")  # which sleep has, too
 
     # A pair of which only one can be replaced: neither is.
     os.makedirs("maps/dark.pmtiles/in the way")

@@ -128,7 +128,7 @@ const counts = await tab.evaluate(async pictures => {
         return canvas.getImageData(0, 0, image.width, image.height);
     }));
     let lines = 0, both = 0, others = 0;
-    const orange = (data, i) => data[i] - data[i + 2] > 60; // main roads are the only ones that are
+    const orange = (data, i) => data[i] - data[i + 2] > 100; // primary and larger roads are the only ones that are
     const near = (data, x, y) => [-1, 0, 1].some(dy => [-1, 0, 1].some(dx => {
         const at = 4 * ((y + dy) * a.width + x + dx);
         return x + dx >= 0 && x + dx < a.width && y + dy >= 0 && y + dy < a.height && orange(data, at);

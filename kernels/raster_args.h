@@ -64,8 +64,7 @@ typedef struct camber_spill_args {
     camber_u32 sums, group, layer, behind;
 } camber_spill_args;
 
-/* The words of a cell: the sets it is in, how many segments were drawn into it, and which cells of its row edges pass;
- * the brush, and which levels are open; the winding number of a polygon's rings; 0 if it has no edges, else 1 + their
+/* The words of a cell: the sets it is in, and which cells of its row edges pass; the brush, and which levels are open; the winding number of a polygon's rings; 0 if it has no edges, else 1 + their
  * number, and in the upper half how many of them are kept. */
 #define CAMBER_SPILL_STATE 0
 #define CAMBER_SPILL_NOW 1
@@ -75,8 +74,7 @@ typedef struct camber_spill_args {
 #define CAMBER_SPILL_SETS 6
 #define CAMBER_SPILL_BRUSHED 1u
 #define CAMBER_SPILL_TOUCHED(level) (8u << (level))
-#define CAMBER_SPILL_COUNT_SHIFT 8
-#define CAMBER_SPILL_EDGED_SHIFT 16
+#define CAMBER_SPILL_EDGED_SHIFT 8
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
 #define CAMBER_SPILL_FULL 0x3ffffffeu /* instead of a brush: nothing below shows through the cell */
 

@@ -163,50 +163,18 @@ static inline void list_cells(cell_list *list, ulong cells, uint word) {
         list->words[at++] = word | (uint)camber_lowest(cells);
 }
 
-/* Cells that one of sixteen segments fills, and, in bits of four sets, how many segments are drawn into each of them
- * before that one. */
-typedef struct filled_cells {
-    ulong cells, before[4];
-} filled_cells;
-
-static inline void find_filled(const batch_sets *sets, uint count, ulong shut, filled_cells *f) {
-    *f = (filled_cells){0};
-    for (uint k = 0; k < count; k++) {
-        const ulong cells = sets->partial[k] & ~(shut | f->cells), inside = sets->full[k];
-        ulong carry = cells & ~inside;
-        f->cells |= cells & inside;
-#pragma unroll
-        for (int i = 0; i < 4; i++) {
-            const ulong next = f->before[i] & carry;
-            f->before[i] ^= carry;
-            carry = next;
-        }
-    }
-}
-
 /* If the brush is opaque, nothing that it draws shows in a cell that one of the segments fills, so that such a cell is
- * drawn at once, and no other segment into it. But if it would be checked for being full before, it is left alone,
- * since it might be. Returns the cells that are drawn. */
+ * drawn at once, and no other segment into it. Returns the cells that are drawn. */
 static inline ulong draw_filled(camber_tile_state *c, const batch_sets *sets, uint count, ulong shut) {
-    ulong any = 0, drawn = 0;
-    filled_cells f;
+    ulong drawn = 0;
     for (uint k = 0; k < count; k++)
-        any |= sets->full[k];
-    if (!(any & ~shut) || c->now.mode == CAMBER_BRUSH_UNION || c->now.a != 1.0f)
+        drawn |= sets->full[k];
+    drawn &= ~shut;
+    if (!drawn || c->now.mode == CAMBER_BRUSH_UNION || c->now.a != 1.0f)
         return 0;
-    find_filled(sets, count, shut, &f);
-    for (ulong left = f.cells; left; left &= left - 1) {
-        const int i = camber_lowest(left);
-        uint before = 0;
-        for (int k = 0; k < 4; k++)
-            before += (uint)(f.before[k] >> i & 1ul) << k;
-        if (c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL + before >= CAMBER_FULL_CHECK_INTERVAL)
-            continue;
-        c->blend_count[i] += (uchar)(c->now.mode == CAMBER_BRUSH_SUM ? 0u : before);
-        drawn |= 1ul << i;
+    for (ulong left = drawn; left; left &= left - 1)
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            c->brush[i][v] = CAMBER_REAL(0.0f);
-    }
+            c->brush[camber_lowest(left)][v] = CAMBER_REAL(0.0f);
     c->brushed |= drawn;
     c->filled |= drawn;
     c->whole |= c->now.mode == CAMBER_BRUSH_SUM ? 0 : drawn;

@@ -134,8 +134,7 @@ static inline void spill_cells(const camber_tile_state *c, global float *spill, 
             const int i = CAMBER_OWN_CELL(row, column, where);
             global camber_u32 *words = cell_words(&to, row, column);
             const camber_u32 edged = a->has_edges ? (camber_u32)(a->edged >> (CAMBER_TILE_CELLS * row) & 255ul) : 0u;
-            words[CAMBER_SPILL_STATE] = sets_of(c, i) | (camber_u32)c->blend_count[i] << CAMBER_SPILL_COUNT_SHIFT |
-                                        edged << CAMBER_SPILL_EDGED_SHIFT;
+            words[CAMBER_SPILL_STATE] = sets_of(c, i) | edged << CAMBER_SPILL_EDGED_SHIFT;
             words[CAMBER_SPILL_NOW] = now;
             words[CAMBER_SPILL_WINDING] = (camber_u32)c->winding;
             words[CAMBER_SPILL_PLACED] =
@@ -150,7 +149,6 @@ static inline void restore_sets(camber_tile_state *c, camber_u32 state, int i) {
                                           &c->touched[0], &c->touched[1], &c->touched[2]};
     for (int k = 0; k < CAMBER_SPILL_SETS; k++)
         *of[k] |= (ulong)(state >> k & 1u) << i;
-    c->blend_count[i] = (uchar)(state >> CAMBER_SPILL_COUNT_SHIFT);
 }
 
 /* Restores a cell's values of the current brush, if any, and of its levels. */

@@ -96,7 +96,13 @@ CAMBER_FN int camber_lowest(camber_u64 bits) {
 #endif
 }
 
-/* Whether all pixels of a cell let almost nothing through. */
+/* Less than CAMBER_NOTHING_PX counts as nothing, in each pixel. So in a cell that lets nothing through, what is below
+ * changes nothing: skipping it, whenever that is noticed, changes only the time. */
+CAMBER_FN camber_real camber_let_through(camber_real through) {
+    return through < CAMBER_NOTHING_PX ? CAMBER_REAL(0.0f) : through;
+}
+
+/* Whether all pixels of a cell let nothing through. */
 CAMBER_FN int camber_lets_nothing(const camber_real *through) {
     camber_real most = through[0];
     for (int v = 1; v < CAMBER_VECTORS; v++)
@@ -167,7 +173,7 @@ CAMBER_FN void camber_tile_put_union(camber_tile_state *c, int i, int v, camber_
 }
 
 /* Counts a segment that was drawn into a cell. After every CAMBER_FULL_CHECK_INTERVAL it checks if the cell is filled.
- * A sum is exact, so it does not stop early. */
+ * Unions and sums are exact, so they do not stop early. */
 CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
     if (c->now.mode != CAMBER_BRUSH_UNION && c->now.mode != CAMBER_BRUSH_SUM &&
         ++c->blend_count[i] % CAMBER_FULL_CHECK_INTERVAL == 0 && c->now.a == 1.0f && camber_lets_nothing(c->brush[i]))
@@ -224,7 +230,8 @@ CAMBER_FN void camber_tile_add(camber_real *stored, camber_real more, int is_new
 
 /* Composites the brush's accumulated coverage of a vector under the colours of its level. */
 CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, int v, int is_new) {
-    camber_real area = 1.0f - c->brush[i][v];
+    const int is_exact = c->now.mode == CAMBER_BRUSH_UNION || c->now.mode == CAMBER_BRUSH_SUM;
+    camber_real area = 1.0f - (is_exact ? c->brush[i][v] : camber_let_through(c->brush[i][v]));
     if (c->now.mode == CAMBER_BRUSH_UNION)
         area = camber_united(area, c->sums[i][0][v], c->sums[i][1][v], c->sums[i][2][v]) * c->now.a;
     const camber_real through = camber_tile_through(c, level, i, v, is_new);
@@ -243,7 +250,7 @@ CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, 
     camber_tile_add(&c->level[level][i][0][v], seen * c->now.r, is_new);
     camber_tile_add(&c->level[level][i][1][v], seen * c->now.g, is_new);
     camber_tile_add(&c->level[level][i][2][v], seen * c->now.b, is_new);
-    c->level[level][i][3][v] = through * (1.0f - area);
+    c->level[level][i][3][v] = camber_let_through(through * (1.0f - area));
 }
 
 CAMBER_FN void camber_tile_close_cell(camber_tile_state *c, int level, int i, int is_new) {
@@ -284,7 +291,8 @@ CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float op
             const camber_real through = c->level[below][i][3][v], seen = through * opacity;
             for (int k = 0; k < 3; k++)
                 c->level[below][i][k][v] += seen * c->level[level][i][k][v];
-            c->level[below][i][3][v] = through * (1.0f - camber_tile_covered(c, level, i, v) * opacity);
+            c->level[below][i][3][v] =
+                camber_let_through(through * (1.0f - camber_tile_covered(c, level, i, v) * opacity));
         }
         camber_tile_look(c, below, i);
     }
@@ -339,9 +347,9 @@ CAMBER_FN void camber_tile_put_colors(camber_tile_state *c, int i, int v, camber
     c->level[level][i][2][v] += seen * c->layer_alpha * color[2] * c->now.b;
     if (c->now.mode == CAMBER_BRUSH_MASKED) {
         c->mask[i][v] += seen * c->layer_alpha * color[3];
-        c->level[level][i][3][v] = through * (1.0f - area);
+        c->level[level][i][3][v] = camber_let_through(through * (1.0f - area));
     } else {
-        c->level[level][i][3][v] = through * (1.0f - area * c->now.a * color[3]);
+        c->level[level][i][3][v] = camber_let_through(through * (1.0f - area * c->now.a * color[3]));
     }
 }
 

@@ -406,7 +406,7 @@ static picture draw_veiled(const fixture *f, const rings *r, uint32_t side) {
 
 static void cut_pictures(const fixture *f, picture (*draw)(const fixture *, const rings *, uint32_t)) {
     static const uint32_t sides[] = {33, 64, 320, 499};
-    rings r = made_rings(9, 4000, 40, 2);
+    rings r = made_rings(9, 2000, 40, 2);
     picture whole = draw(f, &r, 0);
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
         picture p = draw(f, &r, sides[i]);

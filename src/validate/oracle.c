@@ -68,12 +68,16 @@ static double disc_at(const shape *s, double x, double y) {
     return s->radius > 0 ? (hypot(x - s->x, y - s->y) - s->radius) / 0.7072 : -INFINITY;
 }
 
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* Returns -1 if the pixel around x, y is outside, +1 if it is inside, and 0 if it may be partly inside. So the samples
  * of most pixels need not be tested. */
 static int pixel_side(const shape *s, double x, double y) {
     double most = disc_at(s, x, y);
     for (int i = 0; i < s->plane_count; i++)
-        most = fmax(most, plane_at(s->planes[i], x, y));
+        most = larger(plane_at(s->planes[i], x, y), most); /* not a number: an edge without length */
     return most > 1 ? -1 : most <= -1 ? 1 : 0;
 }
 
@@ -81,10 +85,6 @@ static int pixel_side(const shape *s, double x, double y) {
 typedef struct sample_places {
     double x[SAMPLES], y[SAMPLES];
 } sample_places;
-
-static double larger(double a, double b) {
-    return a > b ? a : b;
-}
 
 /* Adds the samples of the pixel at x, y that are inside a shape. It runs one test for all samples before the next test,
  * which compilers can vectorise, and skips tests that the whole pixel passes. */
@@ -103,8 +103,12 @@ static void cover_pixel(camber_oracle_sample_set *set, const sample_places *at, 
             const double dx = x + at->x[k] - s->x, dy = y + at->y[k] - s->y;
             outside[k] = larger(dx * dx + dy * dy - s->radius * s->radius, outside[k]);
         }
-    for (int k = 0; k < SAMPLES; k++)
-        set->bits[k / 64] |= (uint64_t)(outside[k] <= 0) << k % 64;
+    for (int k = 0; k < SAMPLES; k += SIDE) {
+        uint32_t inside = 0; /* a bit a sample: shifts by constants are vectorised, too */
+        for (int i = 0; i < SIDE; i++)
+            inside |= (uint32_t)(outside[k + i] <= 0) << i;
+        set->bits[k / 64] |= (uint64_t)inside << k % 64;
+    }
 }
 
 /* In a dense network, most pixels are full long before the last line. */

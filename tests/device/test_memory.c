@@ -133,10 +133,10 @@ static camber_made_scene make_scene(int repeats) {
 
 static void test_same_bytes(void **state) {
     (void)state;
-    static const uint64_t limits[] = {1 << 16, 1 << 18, 1 << 19, 1 << 20, 1 << 26};
+    static const uint64_t limits[] = {1 << 16, 1 << 17, 1 << 18, 1 << 19, 1 << 26};
     camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    camber_made_scene s = make_scene(2);
+    camber_made_scene s = make_scene(1);
     fixture whole;
     bounded_open(&whole, 0, 0);
     result wanted[3];
@@ -163,14 +163,14 @@ static void test_same_bytes(void **state) {
             const camber_mesh_memory now = camber_mesh_get_memory(b.mesh);
             const bool all = limits[i / 2] == 1 << 26;
             assert_true(all ? r.memory.parts == 1 : r.memory.parts > 4);
-            if (limits[i / 2] < 1 << 20) {
+            if (limits[i / 2] < 1 << 19) {
                 assert_true(r.memory.resident_parts < r.memory.parts && r.memory.resident_parts > 0);
                 assert_true(now.remade_parts > r.memory.parts - r.memory.resident_parts);
             } else if (all) {
                 assert_int_equal(r.memory.resident_parts, 1);
                 assert_int_equal(now.remade_parts, 0);
             }
-            if (method == 0 || limits[i / 2] <= 1 << 18)
+            if (method == 0 || limits[i / 2] <= 1 << 17)
                 print_message("%llu bytes, method %d: %zu of %zu parts stay, %zu made again; %zu of OpenCL at most\n",
                               (unsigned long long)limits[i / 2], method, r.memory.resident_parts, r.memory.parts,
                               now.remade_parts, watch.most_bytes);
@@ -716,11 +716,14 @@ static void compare_pictures(const camber_made_scene *s, unsigned drawers, cambe
         tessellate_on(&e, s, i >= 3, (camber_method)(i % 3));
         const camber_mesh_memory memory = camber_mesh_get_memory(e.mesh);
         assert_true(memory.resident_parts < memory.parts);
-        picture a = draw(&e, i == 1 ? 100 : 0), b = draw(&whole, 0), again = draw(&e, 0);
+        picture a = draw(&e, i == 1 ? 100 : 0), b = draw(&whole, 0);
         picture_assert_same(&a, &b);
-        picture_assert_same(&again, &b);
-        picture_free(&again);
         picture_free(&a);
+        if (i % 3 == 1) {
+            a = draw(&e, 0);
+            picture_assert_same(&a, &b);
+            picture_free(&a);
+        }
         picture_free(&b);
         if (i % 3 == 0 || i == 5) {
             const camber_overdraw x = count(&e, maps[0]), y = count(&whole, maps[1]);
@@ -750,7 +753,7 @@ static void test_same_pictures(void **state) {
                 continue;
             }
             drawn_close(&probe);
-            compare_pictures(&s, 1u << backend, sharings[k], 300000);
+            compare_pictures(&s, 1u << backend, sharings[k], 400000);
             drawn++;
         }
     camber_made_scene_free(&s);
@@ -758,8 +761,8 @@ static void test_same_pictures(void **state) {
         skip();
 }
 
-/* A buffer that a frame asks for while parts are made again is refused once: the frame says so, and the next one is
- * whole. */
+/* A buffer that a frame asks for while parts are made again is refused once: the frame says so, and after three of
+ * them the next one is whole. */
 static void test_refused_frames(void **state) {
     (void)state;
     drawn_lines e;
@@ -791,7 +794,7 @@ static void test_refused_frames(void **state) {
                 refused++;
             }
             assert_int_equal(e.f.h.errors, 0);
-            if (status == CAMBER_OK && n % 8)
+            if (n % (status == CAMBER_OK ? 8 : 3))
                 continue;
             picture p = draw(&e, 0);
             picture_assert_same(&p, &wanted);

@@ -194,24 +194,41 @@ static picture draw_rings(const fixture *f, const rings *r, const camber_fill *f
     return p;
 }
 
+/* The rows that a ring crosses, and which way it goes around. */
+typedef struct ring_extent {
+    double top, bottom;
+    int sign;
+} ring_extent;
+
+static ring_extent extent_of(const rings *r, size_t ring) {
+    const size_t first = r->offsets[ring], count = r->offsets[ring + 1] - first;
+    ring_extent extent = {INFINITY, -INFINITY, 1};
+    double area = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % count);
+        area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
+        extent.top = fmin(extent.top, (double)a[1]);
+        extent.bottom = fmax(extent.bottom, (double)a[1]);
+    }
+    extent.sign = area < 0 ? -1 : 1;
+    return extent;
+}
+
 /* Adds how often each ring, clockwise as seen, winds around the samples of a row, by where its edges cross that. */
-static void wind_samples(const rings *r, double y, int *windings) {
+static void wind_samples(const rings *r, const ring_extent *extents, double y, int *windings) {
     for (size_t k = 0; k < r->ring_count; k++) {
         const size_t first = r->offsets[k], count = r->offsets[k + 1] - first;
-        double area = 0;
+        if (y < extents[k].top || y > extents[k].bottom)
+            continue;
         for (size_t i = 0; i < count; i++) {
-            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % count);
-            area += (double)a[0] * (double)b[1] - (double)b[0] * (double)a[1];
-        }
-        for (size_t i = 0; i < count; i++) {
-            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1) % count);
+            const float *a = r->points + 2 * (first + i), *b = r->points + 2 * (first + (i + 1 < count ? i + 1 : 0));
             if (((double)a[1] <= y) == ((double)b[1] <= y))
                 continue;
             const double t = (y - (double)a[1]) / ((double)b[1] - (double)a[1]);
             const double x = (double)a[0] + t * ((double)b[0] - (double)a[0]);
             const double sample = ceil(x * SAMPLES - 0.5);
             const int at = sample < 0 ? 0 : sample > SIDE_PX * SAMPLES ? SIDE_PX * SAMPLES : (int)sample;
-            windings[at] += (b[1] > a[1] ? 1 : -1) * (area < 0 ? -1 : 1);
+            windings[at] += (b[1] > a[1] ? 1 : -1) * extents[k].sign;
         }
     }
 }
@@ -220,17 +237,24 @@ static void wind_samples(const rings *r, double y, int *windings) {
 static double *sample_rings(const rings *r, bool evenodd) {
     double *truth = calloc(SIDE_PX * SIDE_PX, sizeof *truth);
     int *windings = malloc((SIDE_PX * SAMPLES + 1) * sizeof *windings);
-    assert_true(truth && windings);
+    ring_extent *extents = malloc(r->ring_count * sizeof *extents);
+    assert_true(truth && windings && extents);
+    for (size_t k = 0; k < r->ring_count; k++)
+        extents[k] = extent_of(r, k);
     for (int row = 0; row < SIDE_PX * SAMPLES; row++) {
         int winding = 0;
         memset(windings, 0, (SIDE_PX * SAMPLES + 1) * sizeof *windings);
-        wind_samples(r, (row + 0.5) / SAMPLES, windings);
-        for (int i = 0; i < SIDE_PX * SAMPLES; i++) {
-            winding += windings[i];
-            if (evenodd ? winding % 2 != 0 : winding != 0)
-                truth[row / SAMPLES * SIDE_PX + i / SAMPLES] += 1.0 / (SAMPLES * SAMPLES);
+        wind_samples(r, extents, (row + 0.5) / SAMPLES, windings);
+        for (int x = 0; x < SIDE_PX; x++) {
+            int inside = 0;
+            for (int i = SAMPLES * x; i < SAMPLES * (x + 1); i++) {
+                winding += windings[i];
+                inside += evenodd ? winding % 2 != 0 : winding != 0;
+            }
+            truth[row / SAMPLES * SIDE_PX + x] += (double)inside / (SAMPLES * SAMPLES);
         }
     }
+    free(extents);
     free(windings);
     return truth;
 }
@@ -382,7 +406,7 @@ static picture draw_veiled(const fixture *f, const rings *r, uint32_t side) {
 
 static void cut_pictures(const fixture *f, picture (*draw)(const fixture *, const rings *, uint32_t)) {
     static const uint32_t sides[] = {33, 64, 320, 499};
-    rings r = made_rings(9, 4000, 40, 2);
+    rings r = made_rings(9, 2000, 40, 2);
     picture whole = draw(f, &r, 0);
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
         picture p = draw(f, &r, sides[i]);

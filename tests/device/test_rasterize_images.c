@@ -5,7 +5,7 @@
 #include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
-enum { SIDE_PX = 420, IMAGES = 6, BYTES_MAX = 4 * 70 * 70 };
+enum { SIDE_PX = 300, IMAGES = 6, BYTES_MAX = 4 * 70 * 70 };
 
 typedef struct drawing {
     uint8_t rgba[IMAGES][BYTES_MAX];
@@ -177,7 +177,7 @@ static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *m
     for (int pitched = 0; pitched < 2; pitched++) {
         if (pitched)
             raster_tilt(&drawn, first_way % 2 ? 40 : 75, SIDE_PX, SIDE_PX);
-        uint8_t *rgba = raster_draw_twice(e, &drawn, (camber_raster_area){32, 64, 300, 233});
+        uint8_t *rgba = raster_draw_twice(e, &drawn, (camber_raster_area){32, 32, 230, 200});
         camber_free(e->context, rgba);
     }
     camber_free(e->context, images.held);
@@ -218,6 +218,7 @@ static void test_gl(void **state) {
     for (size_t way = 0; way < WAYS; way++) {
         const int which = (int)way % SCENES;
         drawing *d = begin_drawing(which, way);
+        scene_shorten(&d->lines, 40);
         d->passes[2].fill.color.a = 0;
         compare_with_gl(e, d, names[which], way, 0.3);
         make_images(d, true);
@@ -228,10 +229,12 @@ static void test_gl(void **state) {
         d->passes[3].opacity = 0.6f;
         for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
             d->paints[0][i].color.a = 0.5f;
-        compare_with_gl(e, d, "  translucent", way, 0.4);
+        if (way % 2)
+            compare_with_gl(e, d, "  translucent", way, 0.4);
         d->frame.coverage = CAMBER_COVERAGE_LINEAR;
         d->passes[3].overlap = CAMBER_OVERLAP_ACCUMULATE;
-        compare_with_gl(e, d, "  linear", way, 0.4);
+        if (way % 2 == 0)
+            compare_with_gl(e, d, "  translucent, linear", way, 0.4);
         d->frame.pitch_deg = way % 2 ? 50 : 75;
         compare_with_gl(e, d, "  at an angle", way, 0.4);
         end_drawing(d);
@@ -242,7 +245,7 @@ static void test_gl(void **state) {
 
 static void test_areas(void **state) {
     const fixture *e = *state;
-    static const uint32_t sides[] = {33, 64, 320};
+    static const uint32_t sides[] = {33, 64, 200};
     drawing *d = begin_drawing(0, 1);
     d->passes[1].opacity = 0.5f;
     picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d);
@@ -275,6 +278,8 @@ static void test_hostile(void **state) {
     for (size_t i = 0; i < 2 * sizeof odd / sizeof *odd; i++) {
         const float size = odd[i / 2];
         drawing *d = begin_drawing(2, i);
+        d->frame.width = d->frame.height = 150;
+        scene_shorten(&d->lines, 40);
         memcpy(d->images, images, sizeof images);
         d->passes[0].fill = (camber_fill){.color = {0, 0, 0, 1},
                                           .image = d->images + i % 2,

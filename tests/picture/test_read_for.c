@@ -78,7 +78,7 @@ static void test_indexed(void **state) {
     folder_make(folder);
     snprintf(source, sizeof source, "%s/source.json", folder);
     snprintf(plain, sizeof plain, "%s/plain.geojson", folder);
-    network_write(source, 7.0, 46.0, 40, 2000, false);
+    network_write(source, 7.0, 46.0, 40, 1000, false);
     for (size_t i = 0; i < INDEXED_FILES; i++) {
         snprintf(indexed, sizeof indexed, "%s/%s", folder, indexed_files[i].name);
         indexed_file_write(&indexed_files[i], source, indexed, plain);
@@ -95,7 +95,7 @@ static void test_antimeridian(void **state) {
     snprintf(source, sizeof source, "%s/source.json", folder);
     snprintf(plain, sizeof plain, "%s/plain.geojson", folder);
     snprintf(indexed, sizeof indexed, "%s/degrees.fgb", folder);
-    network_write(source, 178.0, -2.0, 40, 2000, false);
+    network_write(source, 178.0, -2.0, 40, 1000, false);
     indexed_file_write(&indexed_files[0], source, indexed, plain);
     expect_same_pictures(f, (const char *const[]){indexed, plain}, 179.4, -0.5);
     expect_same_pictures(f, (const char *const[]){indexed, plain}, -180.6, -0.5);

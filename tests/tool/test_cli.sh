@@ -30,7 +30,7 @@ fail() {
     echo "FAILED: $name: $*"
 }
 
-# What is in the folders that the tool writes into. By the shell itself, as in verify: programs take longer than the tool.
+# Lists the folders that the tool writes into. The shell does it, as verify does: six programs a run took longer than a run.
 list_files() {
     shopt -s dotglob nullglob
     listed=("$tmp/out"/* "$tmp/spool"/*)

@@ -128,7 +128,13 @@ export function comparePictures(page, shown, drawn, levels = 8) {
         let most = 0, off = 0, wide = 0, sum = 0;
         const far = new Uint8Array(a.width * a.height);
         const colors = new Set();
+        const shown = new Uint32Array(a.data.buffer), drawn = new Uint32Array(b.data.buffer);
         for (let i = 0; i < a.data.length; i += 4) {
+            const color = drawn[i / 4];
+            if (i === 0 || color !== drawn[i / 4 - 1])
+                colors.add(color & 0xffffff);
+            if (shown[i / 4] === color)
+                continue;
             let apart = 0;
             for (let c = 0; c < 3; c++) {
                 apart = Math.max(apart, Math.abs(a.data[i + c] - b.data[i + c]));
@@ -137,11 +143,10 @@ export function comparePictures(page, shown, drawn, levels = 8) {
             most = Math.max(most, apart);
             off += apart > 0;
             far[i / 4] = apart > levels;
-            colors.add(b.data[i] << 16 | b.data[i + 1] << 8 | b.data[i + 2]);
         }
         const around = [-1, 0, 1].flatMap(row => [-1, 0, 1].map(column => row * a.width + column));
         for (let i = a.width + 1; i < far.length - a.width - 1; i++)
-            wide += around.every(step => far[i + step]);
+            wide += far[i] && around.every(step => far[i + step]);
         return {most, off, wide, mean: sum / (a.data.length / 4 * 3), colors: colors.size, same: a.width === b.width && a.height === b.height};
     }, [levels, shown.toString('base64'), drawn.toString('base64')]);
 }

@@ -20,17 +20,19 @@ export CAMBER_BUILD=$build LD_LIBRARY_PATH=$build/src CAMBER_TOOL=$build/src/cam
 pip() { "$python" -m pip --disable-pip-version-check "$@" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }; }
 sanitizer=$(ldd "$build/src/libcamber.so" | awk '/lib[at]san/ { print $3 }')
 case $sanitizer in *libasan*) export CFLAGS=-fsanitize=address PYTHONMALLOC=malloc ;; esac # so that it sees Python's blocks
-pip install --no-index --no-deps --root-user-action=ignore --target "$folder/site" .
-if "$python" -c 'import build.__main__' 2>/dev/null; then # the same from a source distribution, as a release has it
-    "$python" -m build --outdir "$folder/dist" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
-    ls "$folder"/dist/camber-*.tar.gz "$folder"/dist/camber-*.whl
+# As a release has it, from a source distribution, which build makes of the tree.
+sources=.
+if "$python" -c 'import build.__main__' 2>/dev/null; then
+    "$python" -m build --sdist --outdir "$folder/dist" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+    sources=$(ls "$folder"/dist/camber-*.tar.gz)
 fi
+pip install --no-index --no-deps --root-user-action=ignore --target "$folder/site" "$sources"
 export PYTHONPATH=$folder/site
 if [ -n "$sanitizer" ]; then
     echo "under a sanitizer: the stubs are not compared"
 elif "$python" -c 'import mypy' 2>/dev/null; then # the stubs say what the module has
     (cd "$folder" && "$python" -m mypy.stubtest camber --ignore-missing-stub) || exit 1
-    (cd "$folder/site" && "$python" -m mypy --cache-dir "$folder" -c 'import camber; camber.Map("a", column="b")') |
+    (cd "$folder/site" && "$python" -m mypy --cache-dir "${XDG_CACHE_HOME:-$folder}/mypy" -c 'import camber; camber.Map("a", column="b")') |
         grep -q 'Argument "column" to "Map"' || { echo "the stubs take an argument that does not exist"; exit 1; }
 else
     echo "no mypy: the stubs are not compared"

@@ -287,7 +287,7 @@ def test_same_bytes():
 
 def test_schedule():
     """Shards that go by a schedule make the same archive, and refuse a schedule that is of something else."""
-    make_lines("lines.geojson", 200, reach=200.0)
+    make_lines("lines.geojson", 60, reach=60.0)
     style = write_style("dashed", STYLES["dashed"] + STYLES["labelled"][1:])
     common = ["lines.geojson", "--style", style, "--max-zoom", "13"]
     tiles(*common, "-o", "one.pmtiles", "-f")
@@ -316,9 +316,9 @@ def test_schedule():
     by_schedule = ["-o", "refused.pmtiles", "--schedule", "plan", "--shard", "1/2"]
     tiles(*common[:-1], "12", *by_schedule, status=65)
     tiles("lines.geojson", "--max-zoom", "13", *by_schedule, status=65)
-    make_lines("lines.geojson", 199, reach=200.0)
+    make_lines("lines.geojson", 59, reach=60.0)
     tiles(*common, *by_schedule, status=65)
-    make_lines("lines.geojson", 200, reach=200.0)
+    make_lines("lines.geojson", 60, reach=60.0)
     features = bytearray(read("plan.features"))
     for at in (0, 9, 70, len(features) // 2, len(features) - 20):
         damaged = bytearray(features)
@@ -533,7 +533,7 @@ def test_renew():
     expect("line 2" in line, line)
 
 
-SHARDS = 24  # more than there are units
+SHARDS = 20  # more than there are units
 
 
 def test_labels():

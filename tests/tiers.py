@@ -37,9 +37,9 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
                    r"tests/(CMakeLists\.txt|environment\.cmake|fuzz/CMakeLists\.txt))$")
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
-# Layers that one format or one verb leads to. A test that names none of the layer's words does not get there by way of a
+# Layers that some formats or one verb lead to. A test that has none of the layer's words does not get there by way of a
 # library or of the tool.
-WORDS = {"osm": "pbf", "print": "pdf|svg|paper", "serve": "serve"}
+WORDS = {"osm": "pbf", "archive": "tiles|archive|gpkg|sqlite", "tiles": "tile", "print": "pdf|svg|paper", "serve": "serve"}
 DEFAULT_COST = 1.0
 # A change has so many minutes of two processors, lint and the build included: one of a kernel, or whatever else reaches
 # nearly all of ./dev test; one of less, such as a reader or the server; one of documents alone.
@@ -180,7 +180,8 @@ class Mentions:
             return file.read()
 
     def _text_of(self, test):
-        """What a test runs: its command, its own files and those that these name, and the folders of its labels."""
+        """What a test runs: its command, its own files and those that these name, and the folders of its labels. "" if that
+        is not known."""
         waiting = [stem for stem in self.texts if is_named_after(test.name, [stem])]
         found, text = set(), self.commands.get(test.name, "")
         while waiting:
@@ -193,14 +194,14 @@ class Mentions:
         for label in test.labels[1:]:
             if label == "python" or label.startswith("examples"):
                 text += "".join(map(self._text, self._files(label.replace("-", "/"))))
-        return text
+        return text and test.name + text
 
     def unreached(self, test):
         """The layers of WORDS that no word of a test leads to."""
         if test.name not in self.known:
             text = self._text_of(test)
             self.known[test.name] = {layer for layer, words in WORDS.items()
-                                     if layer not in test.labels and text and not re.search(words, text, re.I)}
+                                     if text and layer not in test.labels and not re.search(words, text, re.I)}
         return self.known[test.name]
 
     def stems(self, path):

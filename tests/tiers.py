@@ -37,6 +37,9 @@ BUILD = re.compile(r"(dev|CMakeLists\.txt|\.ci/.*|src/[^/]*(CMakeLists\.txt|\.cm
                    r"tests/(CMakeLists\.txt|environment\.cmake|fuzz/CMakeLists\.txt))$")
 LINT = re.compile(r"(\.clang-tidy|\.clang-format|\.ci/pinned|tests/lint\.cmake)$")
 MODULES = {"camber-map": ("gdal",)}  # loaded when they are needed: no arrow leads there
+# Layers that some formats or one verb lead to. A test that has none of the layer's words does not get there by way of a
+# library or of the tool.
+WORDS = {"osm": "pbf", "archive": "tiles|archive|gpkg|sqlite", "tiles": "tile", "print": "pdf|svg|paper", "serve": "serve"}
 DEFAULT_COST = 1.0
 # A change has so many minutes of two processors, lint and the build included: one of a kernel, or whatever else reaches
 # nearly all of ./dev test; one of less, such as a reader or the server; one of documents alone.
@@ -157,16 +160,49 @@ def stem_of(path):
 
 
 class Mentions:
-    """Which tests a file of tests/ belongs to: those that are named after it, or after a file that mentions it."""
+    """Which tests a file of tests/ belongs to: those that are named after it, or after a file that mentions it. And which
+    layers of WORDS a test does not get to."""
 
     def __init__(self, root):
-        self.texts = {}
-        for top, folders, names in os.walk(os.path.join(root, "tests")):
+        self.root, self.texts, self.known = root, collections.defaultdict(str), {}
+        for path in self._files("tests", (".c", ".h", ".py", ".sh", ".mjs")):
+            self.texts[os.path.splitext(os.path.basename(path))[0]] += self._text(path)
+        self.words = {stem: set(re.findall(r"\w+", text)) for stem, text in self.texts.items()}
+        self.commands = dict(re.findall(r"add_test\(NAME (\S+)(.*?)\)\n", self._text("tests/CMakeLists.txt"), re.S))
+
+    def _files(self, folder, endings=("",)):
+        for top, folders, names in os.walk(os.path.join(self.root, folder)):
             folders[:] = [name for name in folders if name not in ("corpus", "regressions", "data", "golden")]
-            for name in names:
-                if name.endswith((".c", ".h", ".py", ".sh", ".mjs")):
-                    with open(os.path.join(top, name), encoding="utf-8", errors="replace") as file:
-                        self.texts[os.path.splitext(name)[0]] = set(re.findall(r"\w+", file.read()))
+            yield from (os.path.join(top, name) for name in names if name.endswith(endings))
+
+    def _text(self, path):
+        with open(os.path.join(self.root, path), encoding="utf-8", errors="replace") as file:
+            return file.read()
+
+    def _text_of(self, test):
+        """What a test runs: its command, its own files and those that these name, and the folders of its labels. "" if that
+        is not known."""
+        waiting = [stem for stem in self.texts if is_named_after(test.name, [stem])]
+        found, text = set(), self.commands.get(test.name, "")
+        while waiting:
+            stem = waiting.pop()
+            if stem not in found:
+                found.add(stem)
+                text += self.texts[stem]
+                waiting += {name for names in re.findall(r"\b(\w+)\.(?:h|py|sh|mjs)\b|\b(?:import|from) (\w+)", self.texts[stem])
+                            for name in names} & self.texts.keys()
+        for label in test.labels[1:]:
+            if label == "python" or label.startswith("examples"):
+                text += "".join(map(self._text, self._files(label.replace("-", "/"))))
+        return text and test.name + text
+
+    def unreached(self, test):
+        """The layers of WORDS that no word of a test leads to."""
+        if test.name not in self.known:
+            text = self._text_of(test)
+            self.known[test.name] = {layer for layer, words in WORDS.items()
+                                     if text and layer not in test.labels and not re.search(words, text, re.I)}
+        return self.known[test.name]
 
     def stems(self, path):
         """The stems of a file and of all that mention it, by way of others too."""
@@ -174,7 +210,7 @@ class Mentions:
         while waiting:
             one = waiting.pop()
             found.add(one)
-            waiting += [other for other, words in self.texts.items() if one in words and other not in found]
+            waiting += [other for other, words in self.words.items() if one in words and other not in found]
         return found
 
 
@@ -295,7 +331,7 @@ def choose(root, tests, changed, number, recipes=()):
         if test.name not in shares:
             continue
         if label in EVERYDAY:
-            covered = set().union(*map(arrows.covered, named))
+            covered = set().union(*map(arrows.covered, named)) - mentions.unreached(test)
             is_reached = (label == "tree" or "build" in areas or covered & areas or is_named_after(test.name, stems) or
                           label == "tool" and "cli" in areas)
         else:

@@ -331,8 +331,7 @@ group='along lines: glyphs'
 mutant strip kernels/area.h "glyphs: counters that wind like the glyph" 'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(-1.0f)' \
     'e->down = down ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.0f)'
 drawer=(--draw cl) # GL draws halos by its shaders
-mutant strip kernels/tile_state.h "glyphs: halos shine through them" 'c->level[level][i][3][v] = through * (1.0f - area)' \
-    'c->level[level][i][3][v] = through'
+mutant strip kernels/tile_state.h "glyphs: halos shine through them" 'camber_let_through(through * (1.0f - area))' 'through'
 drawer=()
 group='along lines'
 mutant strip kernels/features.h "gaps that are not cut out" 'area > gap ? area - gap' 'area > gap ? area'
@@ -390,8 +389,8 @@ mutant strip kernels/bins.cl "lists that are turned over" 'to->lists[to->starts[
 mutant strip kernels/rasterize_sixteen.cl "cells of segments that wait in vain" 'k < count; k++) {
         const ulong cells = sets->partial[k] & ~shut, nears' 'k + 1u < count; k++) {
         const ulong cells = sets->partial[k] & ~shut, nears'
-mutant strip kernels/rasterize_sixteen.cl "cells filled by segments that only touch them" 'f->cells |= cells & inside' \
-    'f->cells |= cells'
+mutant strip kernels/rasterize_sixteen.cl "cells filled by segments that only touch them" 'drawn |= sets->full[k]' \
+    'drawn |= sets->partial[k]'
 mutant strip kernels/rasterize_sixteen.cl "caps at both ends" '(p->goes_on_b ? none : at_b)' '(p->goes_on_a ? none : at_b)'
 mutant strip kernels/rasterize_sixteen.cl "flat joins taken for caps" 'joined_a | joined_b' 'joined_a'
 mutant strip kernels/rasterize_sixteen.cl "caps at the other end" 'p->flat_b - at->past_b' 'p->flat_a - at->past_b'
@@ -425,8 +424,7 @@ mutant strip kernels/segment.h "areas: edges that no row of tiles knows" '? 0u :
 group=pixels
 mutant strip kernels/tile_state.h "cells that are done too early" 'camber_most_of(most) < CAMBER_NOTHING_PX' \
     'camber_most_of(most) < 0.5f'
-mutant strip kernels/tile_state.h "what lies below shines through" 'c->level[level][i][3][v] = through * (1.0f - area)' \
-    'c->level[level][i][3][v] = through'
+mutant strip kernels/tile_state.h "what lies below shines through" 'camber_let_through(through * (1.0f - area))' 'through'
 mutant strip kernels/tile_state.h "united lines: areas that are not summed" 'c->sums[i][0][v] += ' 'c->sums[i][0][v] = '
 mutant strip kernels/tile_state.h "cells that keep what they had" 'cells & ~c->brushed; left' 'cells & c->brushed; left'
 mutant strip kernels/cells.h "cells that are whole too soon" 'h - p->side.extent - reach : always' 'h - p->side.extent : always'

@@ -21,6 +21,18 @@
 
 #include "tile_state.h"
 
+/* Where work-items share a tile, each adds other edges to it. Sums of integers do not depend on the order. */
+#if CAMBER_SHARES_TILE
+#define CAMBER_SHARED local
+#define CAMBER_ADD_TO(sum, change) ((void)atomic_add(sum, change))
+#define CAMBER_MARK_CELLS(s, row, cells)                                                                               \
+    ((void)atomic_or((local uint *)&(s)->edged + (row) / 4, (uint)(cells) << CAMBER_TILE_CELLS * ((row) % 4)))
+#else
+#define CAMBER_SHARED
+#define CAMBER_ADD_TO(sum, change) ((void)(*(sum) += (change)))
+#define CAMBER_MARK_CELLS(s, row, cells) ((void)((s)->edged |= (camber_u64)(cells) << (CAMBER_TILE_CELLS * (row))))
+#endif
+
 /* Edges lower than this cover nothing. Edges that move sideways by less than this, in px per px down, count as
  * vertical. */
 #define CAMBER_AREA_FLAT_PX 1e-12f
@@ -326,13 +338,17 @@ CAMBER_FN camber_mask camber_columns_at(camber_real x) {
     return camber_cell_at(x, x > 0.0f, (float)CAMBER_TILE_CELLS);
 }
 
-/* Returns the columns that the kept edges from k on pass in a row of cells, one bit each, of an edge in each lane. */
-CAMBER_FN camber_words camber_kept_columns(const camber_area_state *s, int k, int row) {
+/* An edge as a tile keeps it, one per lane: its CAMBER_PLACED_WORDS words. */
+typedef struct camber_placed_edges {
+    camber_real words[CAMBER_PLACED_WORDS];
+} camber_placed_edges;
+
+/* Returns the columns that edges pass in a row of cells, one bit each. wanted: the lanes that count. */
+CAMBER_FN camber_words camber_passed_columns(const camber_placed_edges *e, camber_mask wanted, int row) {
     const camber_words one = CAMBER_WORD(1u), two = CAMBER_WORD(2u), none = CAMBER_WORD(0u);
-    const camber_real x0 = CAMBER_LOAD(0, s->placed[0] + k), y0 = CAMBER_LOAD(0, s->placed[1] + k),
-                      y1 = CAMBER_LOAD(0, s->placed[2] + k), slope = CAMBER_LOAD(0, s->placed[3] + k);
+    const camber_real x0 = e->words[0], y0 = e->words[1], y1 = e->words[2], slope = e->words[3];
     const camber_real top = CAMBER_REAL((float)(CAMBER_CELL_PX * row)), bottom = top + (float)CAMBER_CELL_PX;
-    const camber_mask passes = (camber_numbers(0) < (float)(s->kept_count - k)) & (y1 > top) & (y0 < bottom);
+    const camber_mask passes = wanted & (y1 > top) & (y0 < bottom);
     if (!CAMBER_ANY(passes))
         return none;
     const camber_real from = top < y0 ? y0 : top > y1 ? y1 : top, to = bottom < y0 ? y0 : bottom > y1 ? y1 : bottom;
@@ -343,14 +359,21 @@ CAMBER_FN camber_words camber_kept_columns(const camber_area_state *s, int k, in
     return passes ? ((two << last) - (one << first)) & 255u : none;
 }
 
+#if CAMBER_SHARES_TILE
+/* The group clears all changes when it begins a brush. */
+CAMBER_FN void camber_area_take_row(local camber_area_state *s, int row) {
+    (void)s;
+    (void)row;
+}
+#else
 /* Prepares a row of cells for changes: if it has no edges so far, clears its changes. */
 CAMBER_FN void camber_area_take_row(camber_area_state *s, int row) {
     if (s->edged >> (CAMBER_TILE_CELLS * row) & 255u)
         return;
-    for (int x = 0; x <= CAMBER_OWN_SIDE; x++)
+    for (int x = 0; x <= CAMBER_TILE_CELLS; x++)
         for (int k = 0; k < 2; k++)
             for (int v = 0; v < CAMBER_VECTORS; v++)
-                s->changes[CAMBER_OWN_ROW(row)][x][k][v] = CAMBER_WORD(0u);
+                s->changes[row][x][k][v] = CAMBER_WORD(0u);
 }
 
 /* Begins a brush, which has no edges yet. */
@@ -362,6 +385,7 @@ CAMBER_FN void camber_area_begin(camber_area_state *s) {
     s->edged = 0;
     s->placed_count = s->kept_count = 0;
 }
+#endif
 
 #if CAMBER_HAS_VECTORS
 /* For each row of pixels of a tile, its number for four pixels; for each column of cells, the right sides of its
@@ -411,22 +435,22 @@ CAMBER_FN camber_real camber_between(camber_real x, float least, float most) {
 }
 
 /* From y on, in px from the tile's top, raises the winding number along the tile's left side. */
-CAMBER_FN void camber_area_turn(camber_area_state *s, float y, float times, camber_tile_rows where) {
+CAMBER_FN void camber_area_turn(CAMBER_SHARED camber_area_state *s, float y, float times, camber_tile_rows where) {
     int row = (int)y / CAMBER_CELL_PX;
     if (y > (float)(CAMBER_CELL_PX * row)) {
         if (row >= where.first && row <= where.last) {
             camber_area_take_row(s, row);
-            s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row);
+            CAMBER_MARK_CELLS(s, row, 1u);
             for (int v = 0; v < CAMBER_VECTORS; v++) {
                 const camber_real rows = camber_between(camber_area_tops(row, v) + (1.0f - y), 0.0f, 1.0f);
-                s->changes[CAMBER_OWN_ROW(row)][0][CAMBER_AREA_ON][v] +=
-                    CAMBER_ROUNDED_WORDS(times * (float)CAMBER_AREA_ONE * rows);
+                CAMBER_ADD_TO(&s->changes[row][0][CAMBER_AREA_ON][v],
+                              CAMBER_ROUNDED_WORDS(times * (float)CAMBER_AREA_ONE * rows));
             }
         }
         row++;
     }
     for (; row <= CAMBER_TILE_CELLS; row++)
-        s->turns[row][0] += (int)times;
+        CAMBER_ADD_TO(&s->turns[row][0], (int)times);
 }
 
 /* The piece of an edge in each row of pixels of a vector. height is in fixed point, with the edge's sign. */
@@ -477,40 +501,32 @@ CAMBER_FN camber_real camber_edge_pieces_until(const camber_edge_pieces *p, floa
     return camber_edge_pieces_left_of(p + v, rise, camber_area_rights(column, v));
 }
 
-/* Adds edge k of a vector to the columns of a row of cells, and to everything right of them. The part of the edge to
- * the left of the drawn columns changes the first of these. */
-CAMBER_FN void camber_area_add_row(camber_area_state *s, const camber_tile_edges *t, int k, int row,
-                                   const camber_cell_columns *at, camber_tile_rows where) {
-    const int past = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS;
-    /* Where all columns are drawn, nothing is left or right of them. */
-    const int has_all = CAMBER_OWN_SIDE == CAMBER_TILE_CELLS;
-    const int first = has_all ? at->first : CAMBER_MORE(at->first, CAMBER_FIRST_COLUMN(where));
-    const int end = has_all ? past : CAMBER_LESS(past, CAMBER_LAST_COLUMN(where) + 1),
-              on = has_all ? past : CAMBER_MORE(past, CAMBER_FIRST_COLUMN(where));
+/* Adds edge k of a vector to the columns of a row of cells, and to everything right of them. */
+CAMBER_FN void camber_area_add_row(CAMBER_SHARED camber_area_state *s, const camber_tile_edges *t, int k, int row,
+                                   const camber_cell_columns *at) {
+    const int end = at->last < CAMBER_TILE_CELLS ? at->last + 1 : CAMBER_TILE_CELLS;
     const float rise = camber_lane_of(&t->rise, k);
     camber_edge_pieces p[CAMBER_VECTORS];
     camber_real before[CAMBER_VECTORS], all[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_edge_pieces_of(t, k, row, v, p + v);
-        if (has_all || on <= CAMBER_LAST_COLUMN(where) + 1)
-            s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON][v] +=
-                CAMBER_ROUNDED_WORDS(p[v].height);
+        CAMBER_ADD_TO(&s->changes[row][end][CAMBER_AREA_ON][v], CAMBER_ROUNDED_WORDS(p[v].height));
+        before[v] = CAMBER_REAL(0.0f);
     }
-    for (int v = 0; v < CAMBER_VECTORS; v++)
-        before[v] = !has_all && first > at->first ? camber_edge_pieces_until(p, rise, first - 1, v) : CAMBER_REAL(0.0f);
-    for (int x = first; x < end; x++) {
+    for (int x = at->first; x < end; x++) {
         for (int v = 0; v < CAMBER_VECTORS; v++)
             all[v] = camber_edge_pieces_until(p, rise, x, v);
         for (int v = 0; v < CAMBER_VECTORS; v++)
-            s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(x, where)][CAMBER_AREA_HERE][v] +=
-                CAMBER_ROUNDED_WORDS(camber_of_pixels(all, before, v));
+            CAMBER_ADD_TO(&s->changes[row][x][CAMBER_AREA_HERE][v],
+                          CAMBER_ROUNDED_WORDS(camber_of_pixels(all, before, v)));
         for (int v = 0; v < CAMBER_VECTORS; v++)
             before[v] = all[v];
     }
 }
 
 /* Marks the cells that a flat edge k of a vector passes: the winding number above it differs from that below it. */
-CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
+CAMBER_FN void camber_area_mark_flat(CAMBER_SHARED camber_area_state *s, const camber_tile_edges *t, int k,
+                                     camber_tile_rows where) {
     const float x0 = camber_lane_of(&t->in.x0, k), x1 = camber_lane_of(&t->in.x1, k), y = camber_lane_of(&t->in.y0, k);
     const float least = CAMBER_LESS(x0, x1), most = CAMBER_MORE(x0, x1), side = (float)CAMBER_TILE_PX - 1.0f;
     const int row = (int)y / CAMBER_CELL_PX, from = (int)CAMBER_LESS(least, side) / CAMBER_CELL_PX,
@@ -518,65 +534,57 @@ CAMBER_FN void camber_area_mark_flat(camber_area_state *s, const camber_tile_edg
     if (row < where.first || row > where.last)
         return;
     camber_area_take_row(s, row);
-    s->edged |= (((camber_u64)2 << to) - ((camber_u64)1 << from)) << (CAMBER_TILE_CELLS * row);
+    CAMBER_MARK_CELLS(s, row, ((camber_u64)2 << to) - ((camber_u64)1 << from));
 }
 
 /* Adds edge k of a vector to the cells that it passes, and changes the winding at corners right of where it crosses
  * tops of cells. */
-CAMBER_FN void camber_area_add_edge(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
+CAMBER_FN void camber_area_add_edge(CAMBER_SHARED camber_area_state *s, const camber_tile_edges *t, int k) {
     const int first = camber_integer_of(&t->first, k), last = camber_integer_of(&t->last, k);
     const int above = camber_integer_of(&t->above, k), below = camber_integer_of(&t->below, k);
     const int down = (int)camber_lane_of(&t->in.down, k);
     int upper = camber_integer_of(t->columns + first, k);
     if (above <= first && above <= below && upper < CAMBER_TILE_CELLS)
-        s->turns[first][upper + 1] += down;
+        CAMBER_ADD_TO(&s->turns[first][upper + 1], down);
     for (int row = first; row <= last; row++) {
         const int lower = camber_integer_of(t->columns + row + 1, k);
         const camber_cell_columns at = {CAMBER_LESS(upper, lower), CAMBER_MORE(upper, lower)};
         if (row < below && lower < CAMBER_TILE_CELLS)
-            s->turns[row + 1][lower + 1] += down;
+            CAMBER_ADD_TO(&s->turns[row + 1][lower + 1], down);
         upper = lower;
         if (at.first == CAMBER_TILE_CELLS)
             continue;
         camber_area_take_row(s, row);
-        s->edged |= ((((camber_u64)2 << at.last) - ((camber_u64)1 << at.first)) & 255u) << (CAMBER_TILE_CELLS * row);
-        camber_area_add_row(s, t, k, row, &at, where);
+        CAMBER_MARK_CELLS(s, row, (((camber_u64)2 << at.last) - ((camber_u64)1 << at.first)) & 255u);
+        camber_area_add_row(s, t, k, row, &at);
     }
 }
 
-CAMBER_FN void camber_placed_edge_of(const camber_area_state *s, int k, camber_tile_edge *e) {
-    e->x0 = s->placed[0][k];
-    e->y0 = s->placed[1][k];
-    e->y1 = s->placed[2][k];
-    e->slope = s->placed[3][k];
-    e->down = s->placed[4][k] > 0.0f ? 1 : -1;
-}
-
-/* Whether the next edge is kept too. A work-item that draws a cell keeps the edges that pass it. */
-CAMBER_FN int camber_area_keeps(camber_area_state *s, camber_tile_rows where) {
-#if CAMBER_OWN_SIDE == 1
-    const int kept = s->kept_count++;
-    const camber_u32 columns = camber_kept_columns(s, kept, where.first);
-    s->kept_count = kept;
-    return columns >> where.column & 1u;
-#else
-    (void)s;
-    (void)where;
-    return 1;
-#endif
-}
-
-/* Keeps the first `count` edges of a vector, in case polygons overlap. */
-CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count, camber_tile_rows where) {
+/* Returns the words with which a tile keeps the edges of a vector. */
+CAMBER_FN camber_placed_edges camber_placed_edges_of(const camber_tile_edges *t) {
     const camber_real one = CAMBER_REAL(1.0f), way = t->turn == 0.0f         ? one
                                                      : t->turn == t->in.down ? CAMBER_REAL(CAMBER_PLACED_LEAVES)
                                                                              : CAMBER_REAL(CAMBER_PLACED_ENTERS);
     const camber_real y1 = t->flat ? t->in.y0 : t->in.y1, slope = t->flat ? t->in.x1 : t->slope;
-    const camber_real words[CAMBER_PLACED_WORDS] = {t->in.x0, t->in.y0, y1, slope, way * t->in.down};
+    const camber_placed_edges e = {{t->in.x0, t->in.y0, y1, slope, way * t->in.down}};
+    return e;
+}
+
+#if CAMBER_SHARES_TILE
+/* Counts an edge. Where polygons overlap, edges are read once more. */
+CAMBER_FN void camber_area_place(local camber_area_state *s, const camber_tile_edges *t, int count) {
+    (void)count;
+    if (t->matters)
+        CAMBER_ADD_TO(&s->placed_count, 1);
+}
+#else
+/* Keeps the first `count` edges of a vector, in case polygons overlap. */
+CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *t, int count) {
+    const camber_placed_edges e = camber_placed_edges_of(t);
     const int all_matter = CAMBER_ALL(t->matters | (camber_numbers(0) >= (float)count));
-    if (CAMBER_OWN_SIDE != 1 && all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
+    if (all_matter && s->placed_count + count <= CAMBER_PLACED_MOST) {
         for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
-            CAMBER_STORE(words[i], 0, s->placed[i] + s->placed_count);
+            CAMBER_STORE(e.words[i], 0, s->placed[i] + s->placed_count);
         s->placed_count += count;
         s->kept_count = s->placed_count;
         return;
@@ -585,13 +593,14 @@ CAMBER_FN void camber_area_place(camber_area_state *s, const camber_tile_edges *
         if (!camber_integer_of(&t->matters, k))
             continue;
         s->placed_count++;
-        if (s->kept_count == CAMBER_KEPT_MOST)
+        if (s->kept_count == CAMBER_PLACED_MOST)
             continue;
         for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
-            s->placed[i][s->kept_count] = camber_lane_of(words + i, k);
-        s->kept_count += camber_area_keeps(s, where);
+            s->placed[i][s->kept_count] = camber_lane_of(e.words + i, k);
+        s->kept_count++;
     }
 }
+#endif
 
 /* ---- Edges inside a pixel ---- */
 
@@ -642,73 +651,73 @@ CAMBER_FN camber_u32 camber_tiny_change(camber_u32 column, camber_u32 i, camber_
 }
 
 /* Adds tiny edge k of a vector to its pixel, and to everything to the right of it. */
-CAMBER_FN void camber_area_add_tiny(camber_area_state *s, const camber_tiny_edges *tiny, int k,
-                                    camber_tile_rows where) {
+CAMBER_FN void camber_area_add_tiny(CAMBER_SHARED camber_area_state *s, const camber_tiny_edges *tiny, int k) {
     const camber_u32 y = (camber_u32)camber_integer_of(&tiny->row, k),
                      x = (camber_u32)camber_integer_of(&tiny->column, k);
-    const camber_u32 first = y % CAMBER_CELL_PX * CAMBER_CELL_PX;
-    const int row = (int)(y / CAMBER_CELL_PX), column = (int)(x / CAMBER_CELL_PX);
-    const int on = CAMBER_MORE(column + 1, CAMBER_FIRST_COLUMN(where));
+    const camber_u32 first = y % CAMBER_CELL_PX * CAMBER_CELL_PX, row = y / CAMBER_CELL_PX, column = x / CAMBER_CELL_PX;
     const camber_u32 here = ((const camber_u32 *)&tiny->here)[k], height = ((const camber_u32 *)&tiny->height)[k];
-    camber_area_take_row(s, row);
-    s->edged |= (camber_u64)1 << (CAMBER_TILE_CELLS * row + column);
-    if (on <= CAMBER_LAST_COLUMN(where) + 1) {
-        camber_u32 *to = (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(on, where)][CAMBER_AREA_ON];
-        for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
-            to[first + i] += height;
-    }
-    if (column >= CAMBER_FIRST_COLUMN(where) && column <= CAMBER_LAST_COLUMN(where)) {
-        camber_u32 *to =
-            (camber_u32 *)s->changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(column, where)][CAMBER_AREA_HERE];
-        for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
-            to[first + i] += camber_tiny_change(x % CAMBER_CELL_PX, i, here, height);
-    }
+    camber_area_take_row(s, (int)row);
+    CAMBER_MARK_CELLS(s, row, (camber_u64)1 << column);
+    CAMBER_SHARED camber_u32 *on = (CAMBER_SHARED camber_u32 *)s->changes[row][column + 1][CAMBER_AREA_ON],
+                             *in = (CAMBER_SHARED camber_u32 *)s->changes[row][column][CAMBER_AREA_HERE];
+    for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
+        CAMBER_ADD_TO(on + first + i, height);
+    for (camber_u32 i = 0; i < CAMBER_CELL_PX; i++)
+        CAMBER_ADD_TO(in + first + i, camber_tiny_change(x % CAMBER_CELL_PX, i, here, height));
 }
 
 /* ---- All edges ---- */
 
 /* Adds edge k of a vector, which is not inside a pixel. */
-CAMBER_FN void camber_area_add_larger(camber_area_state *s, const camber_tile_edges *t, int k, camber_tile_rows where) {
+CAMBER_FN void camber_area_add_larger(CAMBER_SHARED camber_area_state *s, const camber_tile_edges *t, int k,
+                                      camber_tile_rows where) {
     const float turn = camber_lane_of(&t->turn, k);
     if (turn != 0.0f)
         camber_area_turn(s, camber_lane_of(&t->turn_at, k), turn, where);
     /* An edge that begins where the last row of cells ends changes the winding at the corners of that end. */
     if (camber_integer_of(&t->first, k) <= camber_integer_of(&t->last, k) ||
         camber_integer_of(&t->above, k) <= camber_integer_of(&t->below, k))
-        camber_area_add_edge(s, t, k, where);
+        camber_area_add_edge(s, t, k);
     else if (camber_integer_of(&t->flat, k))
         camber_area_mark_flat(s, t, k, where);
 }
 
+/* Cuts wanted edges to a tile, and finds those that are inside a pixel. */
+CAMBER_FN void camber_area_cut(const camber_ring_edges *ring, camber_mask wanted, camber_tile_rows where,
+                               camber_tile_edges *t, camber_tiny_edges *tiny) {
+    t->in = *ring;
+    t->in.x0 = ring->x0 - where.left;
+    t->in.x1 = ring->x1 - where.left;
+    t->in.y0 = ring->y0 - where.top;
+    t->in.y1 = ring->y1 - where.top;
+    camber_tiny_edges_of(&t->in, wanted, where, tiny);
+    if (CAMBER_ANY(wanted & ~tiny->are)) {
+        camber_tile_edges_of(ring, wanted, where, t);
+        return;
+    }
+    t->slope = (t->in.x1 - t->in.x0) / (tiny->are ? t->in.y1 - t->in.y0 : CAMBER_REAL(1.0f));
+    t->turn = CAMBER_REAL(0.0f);
+    t->matters = tiny->are;
+    t->flat = tiny->are & ~tiny->are;
+}
+
 /* Adds the first `count` edges of a vector. */
-CAMBER_FN void camber_area_add(camber_area_state *s, const camber_ring_edges *ring, int count, camber_tile_rows where) {
-    const camber_mask wanted = camber_numbers(0) < (float)count;
+CAMBER_FN void camber_area_add(CAMBER_SHARED camber_area_state *s, const camber_ring_edges *ring, int count,
+                               camber_tile_rows where) {
     camber_tile_edges t;
     camber_tiny_edges tiny;
+#if !CAMBER_SHARES_TILE
     if (!s->has_edges)
         camber_area_begin(s);
-    t.in = *ring;
-    t.in.x0 = ring->x0 - where.left;
-    t.in.x1 = ring->x1 - where.left;
-    t.in.y0 = ring->y0 - where.top;
-    t.in.y1 = ring->y1 - where.top;
-    camber_tiny_edges_of(&t.in, wanted, where, &tiny);
-    const int all_tiny = !CAMBER_ANY(wanted & ~tiny.are);
-    if (all_tiny) {
-        t.slope = (t.in.x1 - t.in.x0) / (tiny.are ? t.in.y1 - t.in.y0 : CAMBER_REAL(1.0f));
-        t.turn = CAMBER_REAL(0.0f);
-        t.matters = tiny.are;
-        t.flat = tiny.are & ~tiny.are;
-    } else {
-        camber_tile_edges_of(ring, wanted, where, &t);
-    }
+#endif
+    camber_area_cut(ring, camber_numbers(0) < (float)count, where, &t, &tiny);
     for (int k = 0; k < count; k++) {
         if (camber_integer_of(&tiny.are, k))
-            camber_area_add_tiny(s, &tiny, k, where);
+            camber_area_add_tiny(s, &tiny, k);
         else
             camber_area_add_larger(s, &t, k, where);
     }
-    camber_area_place(s, &t, count, where);
+    camber_area_place(s, &t, count);
 }
 
 #endif

@@ -50,30 +50,6 @@ typedef struct camber_piled_cell {
     camber_cell_edge edges[CAMBER_OVERLAP_EDGES];
 } camber_piled_cell;
 
-/* The edges that pass the cells of one row. counts: more than CAMBER_OVERLAP_EDGES if not all edges are listed here. */
-typedef struct camber_row_lists {
-    int counts[CAMBER_TILE_CELLS];
-    camber_u16 edges[CAMBER_TILE_CELLS][CAMBER_OVERLAP_EDGES];
-} camber_row_lists;
-
-/* Lists the edges of the given cells of a row, which are one bit each. */
-CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
-    for (int x = 0; x < CAMBER_TILE_CELLS; x++)
-        lists->counts[x] = 0;
-    for (int from = 0; from < s->kept_count; from += CAMBER_LANES) {
-        const camber_words passed = camber_kept_columns(s, from, row) & cells;
-        for (camber_u32 left = camber_lanes_set(passed != 0u); left; left &= left - 1u) {
-            const int k = camber_lowest(left);
-            for (camber_u32 columns = ((const camber_u32 *)&passed)[k]; columns; columns &= columns - 1u) {
-                const int x = camber_lowest(columns);
-                if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
-                    lists->edges[x][lists->counts[x]] = (camber_u16)(from + k);
-                lists->counts[x]++;
-            }
-        }
-    }
-}
-
 /* Returns the positions of the sixteen rows of samples of a row of pixels, in px from the tile's top. */
 CAMBER_FN camber_real camber_piled_cell_rows(const camber_piled_cell *o, int row, int v) {
     return (float)(CAMBER_CELL_PX * o->row) + (camber_numbers(v) + ((float)(16 * row) + 0.5f)) * (1.0f / 16);
@@ -109,24 +85,22 @@ CAMBER_FN void camber_piled_cell_add(camber_piled_cell *o, const camber_tile_edg
     to->to = x0 < left ? to->to : y;
 }
 
-/* Finds the edges of a cell. winding: the winding number at its upper left corner. */
-CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row_lists *lists, int winding,
-                                    camber_piled_cell *o) {
-    const camber_u16 *edges = lists->edges[o->column];
+/* Begins a cell without edges. winding: the winding number at its upper left corner. */
+CAMBER_FN void camber_piled_cell_begin(camber_piled_cell *o, int winding) {
     o->edge_count = 0;
     for (int row = 0; row < CAMBER_CELL_PX; row++)
         for (int v = 0; v < CAMBER_VECTORS; v++)
             o->begin[row][v] = CAMBER_REAL((float)winding);
-    for (int k = 0; k < lists->counts[o->column]; k++) {
-        const float way = s->placed[4][edges[k]], enters = CAMBER_PLACED_ENTERS, leaves = CAMBER_PLACED_LEAVES;
-        camber_tile_edge e;
-        camber_placed_edge_of(s, edges[k], &e);
-        camber_piled_cell_add(o, &e);
-        if (o->column == 0 && CAMBER_FABS(way) == enters && e.y0 > (float)(CAMBER_CELL_PX * o->row))
-            camber_piled_cell_turn(o, e.y0, (float)-e.down);
-        if (o->column == 0 && CAMBER_FABS(way) == leaves && e.y1 > (float)(CAMBER_CELL_PX * o->row))
-            camber_piled_cell_turn(o, e.y1, (float)e.down);
-    }
+}
+
+/* Adds an edge that a tile has kept to a cell that it passes. way: the last of its words. */
+CAMBER_FN void camber_piled_cell_place(camber_piled_cell *o, const camber_tile_edge *e, float way) {
+    const float top = (float)(CAMBER_CELL_PX * o->row);
+    camber_piled_cell_add(o, e);
+    if (o->column == 0 && CAMBER_FABS(way) == CAMBER_PLACED_ENTERS && e->y0 > top)
+        camber_piled_cell_turn(o, e->y0, (float)-e->down);
+    if (o->column == 0 && CAMBER_FABS(way) == CAMBER_PLACED_LEAVES && e->y1 > top)
+        camber_piled_cell_turn(o, e->y1, (float)e->down);
 }
 
 /* Returns by how much a winding number, times its sign in this cell, exceeds its value by the fill rule, 0 to 1. */
@@ -180,48 +154,20 @@ CAMBER_FN void camber_add_too_much(const camber_row_edges *s, camber_real begin,
     }
 }
 
-/* Subtracts the excess from the sums of a row of pixels of cell i, which then become the areas inside. */
-CAMBER_FN void camber_piled_cell_end(camber_tile_state *c, const camber_piled_cell *o, int i, int row, float sign) {
-    const int first = CAMBER_CELL_PX * row;
-    const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
-    float *inside = (float *)c->sums[i][CAMBER_AREA_INSIDE];
+/* Subtracts the excess from the sums of a row of pixels, which then become the areas inside. */
+CAMBER_FN void camber_piled_cell_end(const camber_piled_cell *o, int row, float sign, camber_u32 mode,
+                                     const float sums[CAMBER_CELL_PX], float inside[CAMBER_CELL_PX]) {
     camber_real much[CAMBER_VECTORS][CAMBER_CELL_PX], of_column[CAMBER_VECTORS];
     for (int v = 0; v < CAMBER_VECTORS; v++) {
         camber_row_edges s;
         camber_row_edges_of(o, row, v, &s);
-        camber_add_too_much(&s, o->begin[row][v], sign, c->now.mode, much[v]);
+        camber_add_too_much(&s, o->begin[row][v], sign, mode, much[v]);
     }
     for (int x = 0; x < CAMBER_CELL_PX; x++) {
         for (int v = 0; v < CAMBER_VECTORS; v++)
             of_column[v] = much[v][x];
-        const float area = sign * sums[first + x] - camber_sum_of_sixteen(of_column) * (1.0f / 16);
-        inside[first + x] = area < CAMBER_AREA_LEAST ? 0.0f : area > 1.0f - CAMBER_AREA_LEAST ? 1.0f : area;
-    }
-}
-
-/* Computes the areas inside for the pixels of those cells of a row in which rings may overlap. Their sums must have
- * been computed. */
-CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells, camber_tile_rows where) {
-    const camber_area_state *s = &c->area;
-    camber_row_lists lists;
-    camber_piled_cell o;
-    int winding = c->winding;
-    if (s->placed_count > CAMBER_PLACED_MOST)
-        return;
-    camber_list_row(s, row, cells, &lists);
-    o.row = row;
-    for (o.column = 0; o.column < CAMBER_TILE_CELLS; o.column++) {
-        float all = 0.0f;
-        winding += s->turns[row][o.column];
-        if (!(cells >> o.column & 1u) || lists.counts[o.column] > CAMBER_OVERLAP_EDGES)
-            continue;
-        const int i = CAMBER_OWN_CELL(row, o.column, where);
-        const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
-        for (int k = 0; k < CAMBER_CELL_PX * CAMBER_CELL_PX; k++)
-            all += sums[k];
-        camber_piled_cell_of(s, &lists, winding, &o);
-        for (int y = 0; y < CAMBER_CELL_PX; y++)
-            camber_piled_cell_end(c, &o, i, y, all < 0.0f ? -1.0f : 1.0f);
+        const float area = sign * sums[x] - camber_sum_of_sixteen(of_column) * (1.0f / 16);
+        inside[x] = area < CAMBER_AREA_LEAST ? 0.0f : area > 1.0f - CAMBER_AREA_LEAST ? 1.0f : area;
     }
 }
 
@@ -237,19 +183,126 @@ typedef struct camber_corners {
     int least, most;
 } camber_corners;
 
-/* Whether rings may overlap in a cell, given its sums and its corners. If all of it is inside by the nonzero rule,
- * overlaps do not matter. */
-CAMBER_FN int camber_cell_overlaps(const camber_mask *sums, camber_corners of, camber_u32 mode, int is_whole) {
+/* Bounds that the sums of a cell's pixels exceed, one bit each. */
+#define CAMBER_SUM_BELOW 1u     /* 0 */
+#define CAMBER_SUM_FAR_BELOW 2u /* -1 */
+#define CAMBER_SUM_ABOVE 4u     /* 0 */
+#define CAMBER_SUM_FAR_ABOVE 8u /* 1 */
+
+CAMBER_FN camber_u32 camber_sums_exceed(const camber_mask *sums, int vectors) {
     const int one = CAMBER_AREA_ONE, slack = CAMBER_AREA_SLACK;
-    if (is_whole && mode != CAMBER_BRUSH_AREA_EVENODD && (of.most <= -1 || of.least >= 1))
-        return 0;
-    for (int v = 0; v < CAMBER_VECTORS; v++) {
+    camber_u32 found = 0;
+    for (int v = 0; v < vectors; v++) {
         if (CAMBER_ANY(sums[v] < -slack))
-            of.least = CAMBER_ANY(sums[v] < -one - slack) ? -2 : CAMBER_LESS(of.least, -1);
+            found |= CAMBER_ANY(sums[v] < -one - slack) ? CAMBER_SUM_BELOW | CAMBER_SUM_FAR_BELOW : CAMBER_SUM_BELOW;
         if (CAMBER_ANY(sums[v] > slack))
-            of.most = CAMBER_ANY(sums[v] > one + slack) ? 2 : CAMBER_MORE(of.most, 1);
+            found |= CAMBER_ANY(sums[v] > one + slack) ? CAMBER_SUM_ABOVE | CAMBER_SUM_FAR_ABOVE : CAMBER_SUM_ABOVE;
     }
+    return found;
+}
+
+/* Whether overlaps do not matter in a cell, because all of it is inside by the nonzero rule. */
+CAMBER_FN int camber_cell_is_simple(camber_corners of, camber_u32 mode, int is_whole) {
+    return is_whole && mode != CAMBER_BRUSH_AREA_EVENODD && (of.most <= -1 || of.least >= 1);
+}
+
+/* Whether rings may overlap in a cell that is not simple, given what its sums exceed and its corners. */
+CAMBER_FN int camber_cell_overlaps(camber_u32 sums, camber_corners of) {
+    if (sums & CAMBER_SUM_BELOW)
+        of.least = sums & CAMBER_SUM_FAR_BELOW ? -2 : CAMBER_LESS(of.least, -1);
+    if (sums & CAMBER_SUM_ABOVE)
+        of.most = sums & CAMBER_SUM_FAR_ABOVE ? 2 : CAMBER_MORE(of.most, 1);
     return of.least < -1 || of.most > 1 || of.most - of.least > 1;
+}
+
+/* Draws the inside of the brush's rings in cells that have been found. */
+CAMBER_FN void camber_area_put(camber_tile_state *c, camber_area_cells found) {
+    camber_tile_take_cells(c, found.partial | found.whole);
+    for (; found.partial; found.partial &= found.partial - 1) {
+        const int i = CAMBER_LOWEST_CELL(found.partial);
+        for (int v = 0; v < CAMBER_OWN_VECTORS; v++)
+            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_INSIDE][v]);
+    }
+    for (; found.whole; found.whole &= found.whole - 1)
+        camber_tile_put_whole(c, CAMBER_LOWEST_CELL(found.whole));
+}
+
+#if !CAMBER_SHARES_TILE
+
+/* ---- Tiles of one work-item, which keep their edges ---- */
+
+CAMBER_FN camber_placed_edges camber_kept_edges(const camber_area_state *s, int k) {
+    camber_placed_edges e;
+    for (int i = 0; i < CAMBER_PLACED_WORDS; i++)
+        e.words[i] = CAMBER_LOAD(0, s->placed[i] + k);
+    return e;
+}
+
+/* The edges that pass the cells of one row. counts: more than CAMBER_OVERLAP_EDGES if not all edges are listed here. */
+typedef struct camber_row_lists {
+    int counts[CAMBER_TILE_CELLS];
+    camber_u16 edges[CAMBER_TILE_CELLS][CAMBER_OVERLAP_EDGES];
+} camber_row_lists;
+
+/* Lists the edges of the given cells of a row, which are one bit each. */
+CAMBER_FN void camber_list_row(const camber_area_state *s, int row, camber_u32 cells, camber_row_lists *lists) {
+    for (int x = 0; x < CAMBER_TILE_CELLS; x++)
+        lists->counts[x] = 0;
+    for (int from = 0; from < s->kept_count; from += CAMBER_LANES) {
+        const camber_placed_edges e = camber_kept_edges(s, from);
+        const camber_mask wanted = camber_numbers(0) < (float)(s->kept_count - from);
+        const camber_words passed = camber_passed_columns(&e, wanted, row) & cells;
+        for (camber_u32 left = camber_lanes_set(passed != 0u); left; left &= left - 1u) {
+            const int k = camber_lowest(left);
+            for (camber_u32 columns = ((const camber_u32 *)&passed)[k]; columns; columns &= columns - 1u) {
+                const int x = camber_lowest(columns);
+                if (lists->counts[x] < CAMBER_OVERLAP_EDGES)
+                    lists->edges[x][lists->counts[x]] = (camber_u16)(from + k);
+                lists->counts[x]++;
+            }
+        }
+    }
+}
+
+/* Finds the edges of a cell. winding: the winding number at its upper left corner. */
+CAMBER_FN void camber_piled_cell_of(const camber_area_state *s, const camber_row_lists *lists, int winding,
+                                    camber_piled_cell *o) {
+    camber_piled_cell_begin(o, winding);
+    for (int k = 0; k < lists->counts[o->column]; k++) {
+        const int i = lists->edges[o->column][k];
+        const float way = s->placed[4][i];
+        const camber_tile_edge e = {s->placed[0][i], s->placed[1][i], s->placed[2][i], s->placed[3][i],
+                                    way > 0.0f ? 1 : -1};
+        camber_piled_cell_place(o, &e, way);
+    }
+}
+
+/* Computes the areas inside for the pixels of those cells of a row in which rings may overlap. Their sums must have
+ * been computed. */
+CAMBER_FN void camber_area_find_overlaps(camber_tile_state *c, int row, camber_u32 cells) {
+    const camber_area_state *s = &c->area;
+    camber_row_lists lists;
+    camber_piled_cell o;
+    int winding = c->winding;
+    if (s->placed_count > CAMBER_PLACED_MOST)
+        return;
+    camber_list_row(s, row, cells, &lists);
+    o.row = row;
+    for (o.column = 0; o.column < CAMBER_TILE_CELLS; o.column++) {
+        float all = 0.0f;
+        winding += s->turns[row][o.column];
+        if (!(cells >> o.column & 1u) || lists.counts[o.column] > CAMBER_OVERLAP_EDGES)
+            continue;
+        const int i = CAMBER_TILE_CELLS * row + o.column;
+        const float *sums = (const float *)c->sums[i][CAMBER_AREA_SUM];
+        float *inside = (float *)c->sums[i][CAMBER_AREA_INSIDE];
+        for (int k = 0; k < CAMBER_CELL_PX * CAMBER_CELL_PX; k++)
+            all += sums[k];
+        camber_piled_cell_of(s, &lists, winding, &o);
+        for (int y = 0; y < CAMBER_CELL_PX; y++)
+            camber_piled_cell_end(&o, y, all < 0.0f ? -1.0f : 1.0f, c->now.mode, sums + CAMBER_CELL_PX * y,
+                                  inside + CAMBER_CELL_PX * y);
+    }
 }
 
 /* Computes the areas inside for a cell that edges pass. sums: the sums of its pixels' winding numbers. Returns whether
@@ -264,7 +317,8 @@ CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_ma
         is_whole = is_whole && CAMBER_ALL(inside >= CAMBER_AREA_ONE);
         is_empty = is_empty && !CAMBER_ANY(inside > 0);
     }
-    if (camber_cell_overlaps(sums, of, c->now.mode, is_whole)) {
+    if (!camber_cell_is_simple(of, c->now.mode, is_whole) &&
+        camber_cell_overlaps(camber_sums_exceed(sums, CAMBER_VECTORS), of)) {
         for (int v = 0; v < CAMBER_VECTORS; v++)
             c->sums[i][CAMBER_AREA_SUM][v] = part * CAMBER_TO_REAL(sums[v]);
         found->partial |= (camber_u64)1 << i;
@@ -277,8 +331,7 @@ CAMBER_FN int camber_area_find_cell(camber_tile_state *c, int i, const camber_ma
 
 /* Adds up the changes by the edges of a row of cells, from left to right, and computes the areas inside. A cell that no
  * edge passes is completely inside or outside, like any of its pixels. */
-CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_tile_rows where,
-                                    camber_area_cells *found) {
+CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hidden, camber_area_cells *found) {
     const int *turns_above = c->area.turns[row], *turns_below = c->area.turns[row + 1];
     int top = c->winding + turns_above[0], bottom = c->winding + turns_below[0];
     camber_corners left = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
@@ -287,29 +340,27 @@ CAMBER_FN void camber_area_find_row(camber_tile_state *c, int row, camber_u64 hi
     camber_u32 overlaps = 0;
     for (int v = 0; v < CAMBER_VECTORS; v++)
         on[v] = CAMBER_WORD((camber_u32)top * CAMBER_AREA_ONE);
-    for (int x = 0; x <= CAMBER_LAST_COLUMN(where); x++) {
-        const int i = CAMBER_OWN_CELL(row, x, where);
+    for (int x = 0; x < CAMBER_TILE_CELLS; x++) {
+        const int i = CAMBER_TILE_CELLS * row + x;
         top += turns_above[x + 1];
         bottom += turns_below[x + 1];
         const camber_corners right = {CAMBER_LESS(top, bottom), CAMBER_MORE(top, bottom)};
         const camber_corners of = {CAMBER_LESS(left.least, right.least), CAMBER_MORE(left.most, right.most)};
         left = right;
-        if (x < CAMBER_FIRST_COLUMN(where))
-            continue;
         for (int v = 0; v < CAMBER_VECTORS; v++) {
-            const camber_words *changes = &c->area.changes[CAMBER_OWN_ROW(row)][CAMBER_OWN_COLUMN(x, where)][0][0];
+            const camber_words *changes = &c->area.changes[row][x][0][0];
             on[v] += changes[CAMBER_VECTORS * CAMBER_AREA_ON + v];
             sums[v] = CAMBER_AS_INTEGERS(on[v] + changes[CAMBER_VECTORS * CAMBER_AREA_HERE + v]);
         }
         if (hidden >> i & 1)
             continue;
-        if (c->area.edged >> (CAMBER_TILE_CELLS * row + x) & 1)
+        if (c->area.edged >> i & 1)
             overlaps |= camber_area_find_cell(c, i, sums, of, found) ? 1u << x : 0u;
         else if (camber_winding_is_inside((camber_integer_of(sums, 0) + CAMBER_AREA_ONE / 2) >> 16, c->now.mode))
             found->whole |= (camber_u64)1 << i;
     }
     if (overlaps)
-        camber_area_find_overlaps(c, row, overlaps, where);
+        camber_area_find_overlaps(c, row, overlaps);
 }
 
 /* Finds the cells that have something inside the brush's rings, and ends the rings. For cells that may be partly
@@ -320,26 +371,31 @@ CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, ca
     for (int row = where.first; row <= where.last; row++) {
         const int winding = c->winding + (c->area.has_edges ? c->area.turns[row][0] : 0);
         if (edged >> (CAMBER_TILE_CELLS * row) & 255)
-            camber_area_find_row(c, row, hidden, where, found);
+            camber_area_find_row(c, row, hidden, found);
         else if (camber_winding_is_inside(winding, c->now.mode))
-            found->whole |= CAMBER_OWN_CELLS_OF(row) & ~hidden;
+            found->whole |= (camber_u64)255 << (CAMBER_TILE_CELLS * row) & ~hidden;
     }
     c->area.has_edges = 0;
     c->winding = 0;
 }
 
+#else
+
+/* The same for a cell that shares its tile, and a brush that has no edges in it. */
+CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, camber_area_cells *found) {
+    (void)where;
+    found->partial = 0;
+    found->whole = camber_winding_is_inside(c->winding, c->now.mode) ? 1u & ~(c->done | c->filled) : 0;
+    c->winding = 0;
+}
+
+#endif
+
 /* Draws the inside of the brush's rings, before the brush is closed. */
 CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
     camber_area_cells found;
     camber_area_find(c, where, &found);
-    camber_tile_take_cells(c, found.partial | found.whole);
-    for (; found.partial; found.partial &= found.partial - 1) {
-        const int i = camber_lowest(found.partial);
-        for (int v = 0; v < CAMBER_VECTORS; v++)
-            camber_tile_put_over(c, i, v, c->sums[i][CAMBER_AREA_INSIDE][v]);
-    }
-    for (; found.whole; found.whole &= found.whole - 1)
-        camber_tile_put_whole(c, camber_lowest(found.whole));
+    camber_area_put(c, found);
 }
 
 #endif

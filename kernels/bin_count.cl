@@ -3,6 +3,7 @@
  * Reads segments, edges, boxes[segment_count] and bunches, as setup writes them. Writes counts[chunks * lists]. */
 #include "bins.cl"
 
+#if !CAMBER_SHARES_TILE /* bins_gpu.cl has it for work-groups */
 CAMBER_KERNEL(1, bin_count,
               (global const float *restrict segments, global const float *restrict edges,
                global const camber_u32 *restrict boxes, global const camber_u32 *restrict bunches,
@@ -14,3 +15,4 @@ CAMBER_KERNEL(1, bin_count,
         vstore16((uint16)(0u), i, to.own);
     bin_chunk(segments, edges, boxes, bunches, chunk, &c, &to);
 }
+#endif

@@ -1,8 +1,9 @@
 /* bin_scan: adds up each list's counts over the chunks. A work-item takes sixteen lists.
  * Replaces counts[chunks * lists] by the sums over the chunks before each. Writes totals[lists]. The host adds the
  * totals up to the starts of the lists. */
-#include "segment.h"
+#include "cells.h"
 
+#if !CAMBER_SHARES_TILE /* bins_gpu.cl has it for work-groups */
 CAMBER_KERNEL(1, bin_scan,
               (global camber_u32 *restrict counts, global camber_u32 *restrict totals, const camber_u32 lists,
                const camber_u32 chunks),
@@ -17,3 +18,4 @@ CAMBER_KERNEL(1, bin_scan,
     }
     vstore16(sum, at, totals);
 }
+#endif

@@ -6,6 +6,7 @@
  * counts[chunks * lists] to each chunk's end. Writes lists[starts[lists]]. */
 #include "bins.cl"
 
+#if !CAMBER_SHARES_TILE /* bins_gpu.cl has it for work-groups */
 CAMBER_KERNEL(1, bin_scatter,
               (global const float *restrict segments, global const float *restrict edges,
                global const camber_u32 *restrict boxes, global const camber_u32 *restrict bunches,
@@ -16,3 +17,4 @@ CAMBER_KERNEL(1, bin_scatter,
     const bins to = {starts, counts + (size_t)chunk * c.lists, lists};
     bin_chunk(segments, edges, boxes, bunches, chunk, &c, &to);
 }
+#endif

@@ -8,7 +8,9 @@
 #ifndef CAMBER_BINS_CL
 #define CAMBER_BINS_CL
 
-#include "segment.h"
+#include "cells.h"
+
+#if !CAMBER_SHARES_TILE
 
 /* Queued entries of lists: the list's number above LISTED_BITS, below it the segment's number relative to `base`, with
  * LISTED_BUNCH for a bunch. A row of tiles and its top have at most LISTED_ROOM entries, sixteen boxes have 3 each,
@@ -217,5 +219,7 @@ static __attribute__((noinline)) void bin_chunk(global const float *segments, gl
     }
     put_listed(to, &l, end);
 }
+
+#endif
 
 #endif

@@ -12,33 +12,29 @@
 /* A vector has CAMBER_LANES of the sixteen pixels of a cell, row by row, or of sixteen segments. */
 #define CAMBER_VECTORS (16 / CAMBER_LANES)
 
-/* A work-item of a GPU draws one cell of a tile. Others draw rows of cells, or all. Values per row or column of cells
- * are stored at CAMBER_OWN_ROW or CAMBER_OWN_COLUMN, and values per cell at CAMBER_OWN_CELL. */
+/* On a CPU a work-item draws a tile, or rows of its cells. On a GPU the work-items of a group share a tile, and each
+ * draws a row of the pixels of one cell, which is the only cell of its state. */
 #if defined(CAMBER_DEVICE) && CAMBER_LANES == 1
-#define CAMBER_OWN_SIDE 1
-#define CAMBER_OWN_ROW(row) 0
-#define CAMBER_OWN_COLUMN(x, where) ((x) - (where).column)
-#define CAMBER_FIRST_COLUMN(where) ((where).column)
-#define CAMBER_LAST_COLUMN(where) ((where).column)
+#define CAMBER_SHARES_TILE 1
+#define CAMBER_OWN_CELLS 1
+#define CAMBER_OWN_VECTORS CAMBER_CELL_PX
 #else
-#define CAMBER_OWN_SIDE CAMBER_TILE_CELLS
-#define CAMBER_OWN_ROW(row) (row)
-#define CAMBER_OWN_COLUMN(x, where) ((void)(where), (x))
-#define CAMBER_FIRST_COLUMN(where) ((void)(where), 0)
-#define CAMBER_LAST_COLUMN(where) ((void)(where), CAMBER_TILE_CELLS - 1)
+#define CAMBER_SHARES_TILE 0
+#define CAMBER_OWN_CELLS CAMBER_CELLS
+#define CAMBER_OWN_VECTORS CAMBER_VECTORS
 #endif
-#define CAMBER_OWN_CELLS (CAMBER_OWN_SIDE * CAMBER_OWN_SIDE)
-#define CAMBER_OWN_CELL(row, x, where) (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row) + CAMBER_OWN_COLUMN(x, where))
-/* The cells of a row, one bit each. */
-#define CAMBER_OWN_CELLS_OF(row) ((camber_u64)((1 << CAMBER_OWN_SIDE) - 1) << (CAMBER_OWN_SIDE * CAMBER_OWN_ROW(row)))
+
+/* Functions that GPU compilers must not inline everywhere, which takes them a minute. */
+#ifdef CAMBER_DEVICE
+#define CAMBER_NOINLINE static __attribute__((noinline))
+#else
+#define CAMBER_NOINLINE CAMBER_FN
+#endif
 
 /* Rows of cells [first, last] of a tile, and the position of the tile in the picture, in px. */
 typedef struct camber_tile_rows {
     float left, top;
     int first, last;
-#if CAMBER_OWN_SIDE == 1
-    int column; /* column of the one cell */
-#endif
 } camber_tile_rows;
 
 /* The columns and rows of the pixels of a vector of a cell. */

@@ -1,8 +1,8 @@
-/* Draws a tile, or one cell of it, one segment and one pixel at a time: for rasterize on GPUs, and for the CPU twin.
+/* Draws cells of a tile, one segment and one pixel at a time: for rasterize on GPUs, and for the CPU twin.
  *
- * Input: the tile's list of segments, from its end, and everything that these are drawn from. Output: a tile's state.
- * On a CPU device, rasterize draws sixteen segments and pixels side by side (rasterize.cl). Both use tile_state.h for
- * everything that happens to a pixel. */
+ * Input: a segment and everything that it is drawn from, or a brush. Output: a tile's state. Which segments a cell is
+ * drawn from is up to twin_rasterize.c and rasterize_gpu.cl. On a CPU device, rasterize draws sixteen segments and
+ * pixels side by side (rasterize.cl). All use tile_state.h for everything that happens to a pixel. */
 #ifndef CAMBER_KERNELS_DRAW_CELLS_H
 #define CAMBER_KERNELS_DRAW_CELLS_H
 
@@ -13,17 +13,17 @@ typedef struct camber_draw_source {
     CAMBER_GLOBAL const float *segments, *edges, *arc_lengths, *planes, *side_table;
     CAMBER_GLOBAL const camber_brush *brushes;
     CAMBER_GLOBAL const camber_brush_ext *brush_ext; /* NULL: no brush has features */
-    CAMBER_GLOBAL const camber_u32 *lists;
-    camber_u32 first_edge, edge_count; /* all edges of rings are among these segments */
-    camber_eye eye;                    /* 0 in a picture without a pitch */
+    camber_u32 first_edge, edge_count;               /* all edges of rings are among these segments */
+    camber_eye eye;                                  /* 0 in a picture without a pitch */
 } camber_draw_source;
 
-/* Functions that GPU compilers must not inline everywhere, which takes them a minute. */
-#ifdef CAMBER_DEVICE
-#define CAMBER_NOINLINE static __attribute__((noinline))
-#else
-#define CAMBER_NOINLINE CAMBER_FN
-#endif
+/* A cell of a tile: its number in the tile's state, the position of its first pixel in the picture, with a pitch
+ * relative to the picture's middle, and which of its pixels is the first one that is drawn. */
+typedef struct camber_cell_place {
+    int number;
+    float x, y;
+    int first;
+} camber_cell_place;
 
 /* The tile being drawn. */
 typedef struct camber_drawn_tile {
@@ -31,6 +31,9 @@ typedef struct camber_drawn_tile {
     camber_crossings_left left; /* crossings of its row that no brush has taken yet */
     camber_tile_rows where;
     camber_u32 brush; /* the current brush; ~0: none yet */
+#if CAMBER_SHARES_TILE
+    camber_cell_place own;
+#endif
 } camber_drawn_tile;
 
 /* A segment with everything that it is drawn from. */
@@ -52,26 +55,21 @@ typedef struct camber_drawn_segment {
 #define CAMBER_FEATURES_OF(t) 0u
 #endif
 
-/* A cell of a tile: its number among the drawn cells, and the position of its first pixel in the picture, with a pitch
- * relative to the picture's middle. */
-typedef struct camber_cell_place {
-    int number;
-    float x, y;
-} camber_cell_place;
-
-CAMBER_FN camber_cell_place camber_place_of(camber_tile_rows where, camber_eye eye, int row, int column) {
-    const float x = where.left + 0.5f + (float)(CAMBER_CELL_PX * column);
-    const float y = where.top + 0.5f + (float)(CAMBER_CELL_PX * row);
-    const camber_cell_place place = {CAMBER_OWN_CELL(row, column, where), x - eye.x, y - eye.y};
+/* Returns the place of a cell, given its number in the tile. */
+CAMBER_FN camber_cell_place camber_place_of(camber_tile_rows where, camber_eye eye, int cell) {
+    const float x = where.left + 0.5f + (float)(CAMBER_CELL_PX * (cell % CAMBER_TILE_CELLS));
+    const float y = where.top + 0.5f + (float)(CAMBER_CELL_PX * (cell / CAMBER_TILE_CELLS));
+    const camber_cell_place place = {cell, x - eye.x, y - eye.y, 0};
     return place;
 }
 
+/* The position of pixel i of those that are drawn. */
 CAMBER_FN float camber_pixel_x(camber_cell_place one, int i) {
-    return one.x + (float)(i % CAMBER_CELL_PX);
+    return one.x + (float)((one.first + i) % CAMBER_CELL_PX);
 }
 
 CAMBER_FN float camber_pixel_y(camber_cell_place one, int i) {
-    return one.y + (float)(i / CAMBER_CELL_PX);
+    return one.y + (float)((one.first + i) / CAMBER_CELL_PX);
 }
 
 /* ---- Cells ---- */
@@ -126,15 +124,15 @@ CAMBER_FN float camber_drawn_area(const camber_drawn_segment *t, camber_u32 meet
 
 /* The pixels of a cell as the segment sees them, and their areas. */
 typedef struct camber_cell_pixels {
-    camber_pixel at[CAMBER_VECTORS];
-    float area[CAMBER_VECTORS];
+    camber_pixel at[CAMBER_OWN_VECTORS];
+    float area[CAMBER_OWN_VECTORS];
 } camber_cell_pixels;
 
 /* Adds the areas of a cell's pixels to the brush. */
 CAMBER_FN void camber_put_pixels(camber_tile_state *c, const camber_drawn_segment *t, int number, camber_u32 meets,
                                  const camber_cell_pixels *pixels) {
     const int near_end = CAMBER_STROKE_PITCHED | (meets == CAMBER_CELL_NEAR_END);
-    for (int i = 0; i < CAMBER_VECTORS; i++) {
+    for (int i = 0; i < CAMBER_OWN_VECTORS; i++) {
         const camber_pixel *at = pixels->at + i;
         int thick = t->edge.half_width > CAMBER_UNION_PX;
         float nx, ny;
@@ -169,19 +167,27 @@ CAMBER_FN void camber_drawn_color(const camber_drawn_segment *t, const camber_pi
     }
 }
 
-/* Composites colours that change from pixel to pixel under the colours that a cell already has. */
-CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
-                                 const camber_cell_pixels *pixels, float range[2]) {
 #if CAMBER_STROKE_PITCHED
+/* Returns where along the line all pixels of a cell are, also those that another work-item draws. */
+CAMBER_FN void camber_cell_range(const camber_drawn_segment *t, camber_cell_place one, camber_u32 meets,
+                                 float range[2]) {
+    one.first = 0;
     for (int i = 0; i < CAMBER_VECTORS; i++) {
-        const camber_pixel *at = pixels->at + i;
-        const float reach = camber_extent_along(&t->edge, at);
-        range[0] = CAMBER_LESS(range[0], at->along - reach);
-        range[1] = CAMBER_MORE(range[1], at->along + reach);
+        camber_pixel at;
+        camber_drawn_area(t, meets, 0, camber_pixel_x(one, i), camber_pixel_y(one, i), &at);
+        const float reach = camber_extent_along(&t->edge, &at);
+        range[0] = CAMBER_LESS(range[0], at.along - reach);
+        range[1] = CAMBER_MORE(range[1], at.along + reach);
     }
+}
 #endif
+
+/* Composites colours that change from pixel to pixel under the colours that a cell already has. range: where along the
+ * line the cell is. */
+CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segment *t, int number,
+                                 const camber_cell_pixels *pixels, const float range[2]) {
     camber_tile_take_level(c, camber_tile_level(c), number);
-    for (int i = 0; i < CAMBER_VECTORS; i++) {
+    for (int i = 0; i < CAMBER_OWN_VECTORS; i++) {
         float color[4];
         camber_drawn_color(t, pixels->at + i, range, color);
         camber_tile_put_colors(c, number, i, pixels->area[i], color);
@@ -192,7 +198,7 @@ CAMBER_FN void camber_put_colors(camber_tile_state *c, const camber_drawn_segmen
 CAMBER_FN void camber_put_images(camber_tile_state *c, const camber_drawn_segment *t, camber_cell_place one,
                                  const float *areas) {
     camber_tile_take_level(c, camber_tile_level(c), one.number);
-    for (int i = 0; i < CAMBER_VECTORS; i++) {
+    for (int i = 0; i < CAMBER_OWN_VECTORS; i++) {
         const float x = camber_pixel_x(one, i), y = camber_pixel_y(one, i);
         camber_image_spot spot = {x, y, 0.0f, 0.0f, 0.0f};
         float color[4];
@@ -221,11 +227,14 @@ CAMBER_FN void camber_draw_cell(camber_tile_state *c, const camber_drawn_segment
         camber_tile_put_whole(c, one.number);
         return;
     }
-    for (int i = 0; i < CAMBER_VECTORS; i++)
+    for (int i = 0; i < CAMBER_OWN_VECTORS; i++)
         pixels.area[i] =
             camber_drawn_area(t, meets, is_union, camber_pixel_x(one, i), camber_pixel_y(one, i), pixels.at + i);
 #if CAMBER_HAS_MASKS
     if (has_colors) {
+#if CAMBER_STROKE_PITCHED
+        camber_cell_range(t, one, meets, range);
+#endif
         camber_put_colors(c, t, one.number, &pixels, range);
         camber_tile_count_colors(c, one.number, meets == CAMBER_CELL_FULL);
         return;
@@ -260,69 +269,48 @@ CAMBER_FN void camber_begin_segment(const camber_draw_source *from, const camber
 #endif
 }
 
-/* Draws the cells that a segment may touch. */
-CAMBER_FN void camber_draw_segment(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
-    camber_drawn_segment t;
-    camber_footprint footprint;
-    camber_cell_boxes box;
-    int is_begun = 0;
-    camber_footprint_of(d->from.segments + CAMBER_SEGMENT_WORDS * which, &footprint);
-    camber_cell_boxes_of(&footprint, d->where, 1, &box);
-    const int left = CAMBER_MORE(box.x, CAMBER_FIRST_COLUMN(d->where)),
-              right = CAMBER_LESS(box.x + box.columns - 1, CAMBER_LAST_COLUMN(d->where));
-    for (int j = box.y; j < box.y + box.rows; j++)
-        for (int k = left; k <= right; k++) {
-            const camber_cell_place one = camber_place_of(d->where, d->from.eye, j, k);
-            if ((c->done | c->filled) >> one.number & 1)
-                continue;
-            if (!is_begun)
-                camber_begin_segment(&d->from, c, which, &t);
-            is_begun = 1;
-            camber_draw_cell(c, &t, one);
-        }
+/* Returns the brush of an edge of a ring, or CAMBER_NO_EDGE if segment `which` is none. */
+CAMBER_FN camber_u32 camber_brush_of_edge(const camber_draw_source *from, size_t which) {
+    return (camber_u32)which - from->first_edge < from->edge_count ? CAMBER_BITS(from->edges[camber_edge_brush(which)])
+                                                                   : CAMBER_NO_EDGE;
+}
+
+CAMBER_FN camber_u32 camber_brush_of_segment(const camber_draw_source *from, size_t which) {
+    return CAMBER_BITS(from->segments[CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
 }
 
 /* ---- Areas ---- */
 
-CAMBER_NOINLINE void camber_add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
-    CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
-    camber_ring_edges e;
-    camber_ring_edges_of(ends[0], ends[1], ends[2], ends[3], &e);
-    camber_area_add(&c->area, &e, 1, d->where);
-}
-
-/* Adds those edges of a bunch whose boxes touch the tile. `first` is the number of its first edge. */
-CAMBER_FN void camber_add_bunch(camber_tile_state *c, const camber_drawn_tile *d, size_t first) {
-    for (size_t which = first; which < first / 16u * 16u + 16u; which++) {
-        CAMBER_GLOBAL const float *ends = d->from.edges + camber_edge_ends(which);
-        if (CAMBER_BITS(d->from.edges[camber_edge_brush(which)]) == d->brush &&
-            camber_boxes_touch_tile(ends[0], ends[1], ends[2], ends[3], d->where))
-            camber_add_ring_edge(c, d, which);
-    }
-}
-
-/* Draws the polygon whose edges have been added. */
-CAMBER_NOINLINE void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
-    if (!camber_brush_is_area(&c->now))
-        return;
+/* Draws the inside of a polygon in cells that have been found. */
+CAMBER_NOINLINE void camber_draw_found(camber_tile_state *c, const camber_drawn_tile *d, camber_area_cells found) {
 #if CAMBER_HAS_MASKS
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE) {
         camber_drawn_segment by;
-        camber_area_cells found;
         by.eye = d->from.eye;
-        camber_area_find(c, d->where, &found);
         camber_image_sampler_of(d->from.side_table, 4u * c->brush_ext.image, &by.image);
-        for (int j = d->where.first; j <= d->where.last; j++)
-            for (int k = CAMBER_FIRST_COLUMN(d->where); k <= CAMBER_LAST_COLUMN(d->where); k++) {
-                const camber_cell_place one = camber_place_of(d->where, by.eye, j, k);
-                if ((found.partial | found.whole) >> one.number & 1)
-                    camber_put_images(c, &by, one,
-                                      found.whole >> one.number & 1 ? 0 : c->sums[one.number][CAMBER_AREA_INSIDE]);
-            }
+        for (camber_u64 left = found.partial | found.whole; left; left &= left - 1) {
+            const int i = CAMBER_LOWEST_CELL(left);
+#if CAMBER_SHARES_TILE
+            const camber_cell_place one = d->own;
+#else
+            const camber_cell_place one = camber_place_of(d->where, by.eye, i);
+#endif
+            camber_put_images(c, &by, one, found.whole >> i & 1 ? 0 : c->sums[i][CAMBER_AREA_INSIDE]);
+        }
         return;
     }
 #endif
-    camber_area_draw(c, d->where);
+    (void)d;
+    camber_area_put(c, found);
+}
+
+/* Draws the polygon whose edges have been added. */
+CAMBER_FN void camber_end_area(camber_tile_state *c, const camber_drawn_tile *d) {
+    camber_area_cells found;
+    if (!camber_brush_is_area(&c->now))
+        return;
+    camber_area_find(c, d->where, &found);
+    camber_draw_found(c, d, found);
 }
 
 /* ---- Tiles ---- */
@@ -349,27 +337,13 @@ CAMBER_FN void camber_draw_areas_above(camber_tile_state *c, camber_drawn_tile *
     }
 }
 
-/* Draws entry k of the lists. */
-CAMBER_FN void camber_draw_listed(camber_tile_state *c, camber_drawn_tile *d, camber_u32 k) {
-    const camber_draw_source *from = &d->from;
-    const size_t which = camber_listed(from->lists[k]);
-    camber_u32 brush = (camber_u32)which - from->first_edge < from->edge_count
-                           ? CAMBER_BITS(from->edges[camber_edge_brush(which)])
-                           : CAMBER_NO_EDGE;
-    const int is_edge = brush != CAMBER_NO_EDGE;
-    if (!is_edge)
-        brush = CAMBER_BITS(from->segments[CAMBER_SEGMENT_WORDS * which + CAMBER_SEGMENT_BRUSH]);
-    if (brush != d->brush) {
-        camber_draw_areas_above(c, d, brush);
-        camber_draw_with(c, d, brush);
-        c->winding = camber_take_winding(&d->left, brush);
-    }
-    if (is_edge && from->lists[k] & CAMBER_LISTED_BUNCH)
-        camber_add_bunch(c, d, which);
-    else if (is_edge)
-        camber_add_ring_edge(c, d, which);
-    else
-        camber_draw_segment(c, d, which);
+/* Changes to the brush of a segment or edge. */
+CAMBER_FN void camber_draw_next_with(camber_tile_state *c, camber_drawn_tile *d, camber_u32 brush) {
+    if (brush == d->brush)
+        return;
+    camber_draw_areas_above(c, d, brush);
+    camber_draw_with(c, d, brush);
+    c->winding = camber_take_winding(&d->left, brush);
 }
 
 #endif

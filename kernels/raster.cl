@@ -7,8 +7,10 @@
 
 #include "bin_scatter.cl"
 
+#include "bins_gpu.cl"
+
 #include "wind.cl"
 
 #include "rasterize.cl"
 
-#include "rasterize_one.cl"
+#include "rasterize_gpu.cl"

@@ -64,8 +64,9 @@ typedef struct camber_spill_args {
     camber_u32 sums, group, layer, behind;
 } camber_spill_args;
 
-/* The words of a cell: the sets it is in, and which cells of its row edges pass; the brush, and which levels are open; the winding number of a polygon's rings; 0 if it has no edges, else 1 + their
- * number, and in the upper half how many of them are kept. */
+/* The words of a cell: the sets it is in, and which cells of its row edges pass; the brush, and which levels are open;
+ * the winding number of a polygon's rings; 0 if it has no edges, else 1 + their number, and in the upper half how many
+ * of them are kept. */
 #define CAMBER_SPILL_STATE 0
 #define CAMBER_SPILL_NOW 1
 #define CAMBER_SPILL_WINDING 2
@@ -93,10 +94,16 @@ typedef struct camber_spill_args {
 #define CAMBER_TURN_WORDS 18
 #define CAMBER_AREA_WORDS (8 * CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 /* A cell that more edges than this pass keeps its plain sums even if polygons overlap, and so does a tile with more
- * than CAMBER_PLACED_MOST edges of one brush. If each work-item draws one cell, each has its own turns and edges, and
- * keeps at most one edge more than this. */
+ * than CAMBER_PLACED_MOST edges of one brush. */
 #define CAMBER_OVERLAP_EDGES 64
-#define CAMBER_CELL_AREA_WORDS (64 * (CAMBER_TURN_WORDS + CAMBER_PLACED_WORDS * (CAMBER_OVERLAP_EDGES + 1)))
+
+/* On a GPU, CAMBER_TILE_ITEMS work-items share a tile. Each spills three words: its sets, its brush and open levels,
+ * and the winding number; a plane has four floats of each. Then, if there are polygons: the brush whose edges are being
+ * added, how many of its edges follow, the changes that they have made so far, and the edges. */
+#define CAMBER_TILE_ITEMS 256u
+#define CAMBER_TILE_ITEMS_WORDS (3u * CAMBER_TILE_ITEMS)
+#define CAMBER_SHARED_CHANGES_WORDS 2388u
+#define CAMBER_SHARED_AREA_WORDS (2u + CAMBER_SHARED_CHANGES_WORDS + CAMBER_PLACED_WORDS * CAMBER_PLACED_MOST)
 
 /* rasterize: a job is three words: the tile, the first and the last row of its cells to draw, and the number of the
  * tile's spill. With CAMBER_JOB_BEGINS nothing of the tile was drawn yet, and there is nothing to restore. */

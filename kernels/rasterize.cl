@@ -9,11 +9,12 @@
  * The list is walked from its end, because what is drawn last is on top. Segments below cells that are full are
  * skipped. Each brush is accumulated as the fraction of light that it lets through, and then composited under the
  * colours that are there already. */
-#include "spill.cl"
+#include "spill_cell.cl"
 
-#if CAMBER_LANES > 1 /* rasterize_one.cl does this for one lane */
+#if !CAMBER_SHARES_TILE /* rasterize_gpu.cl does this for work-items that share a tile */
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
+#include "spill.cl"
 
 /* A list's segments are scattered in memory. If the compiler is known to be clang, the segments of the next batch are
  * prefetched while a batch is drawn. Pixels bypass the caches, because nobody reads them before all tiles are drawn. */

@@ -6,7 +6,8 @@
  * in the same way.
  *
  * The sixteen pixels of a cell are in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
- * this file too, has sixteen of one lane. A cell that has received nothing is not stored: the sets of cells say so. */
+ * this file too, has sixteen of one lane. A work-item of a GPU has only the four pixels of its row.
+ * A cell that has received nothing is not stored: the sets of cells say so. */
 #ifndef CAMBER_KERNELS_TILE_STATE_H
 #define CAMBER_KERNELS_TILE_STATE_H
 
@@ -36,21 +37,21 @@ typedef uint16_t camber_u16;
 /* Areas and winding numbers of a brush of polygons are integers in fixed point, with this for a whole pixel: their sums
  * do not depend on the order, and edges in opposite directions cancel. */
 #define CAMBER_AREA_ONE 65536
-/* The most edges of a brush that are kept. */
-#define CAMBER_KEPT_MOST (CAMBER_OWN_SIDE == 1 ? CAMBER_OVERLAP_EDGES + 1 : CAMBER_PLACED_MOST)
-/* A brush of polygons: how its edges change a tile (area.h). */
+/* A brush of polygons: how its edges change a tile (area.h). If work-items share a tile, they share this too. */
 typedef struct camber_area_state {
     /* Changes of the winding: the edges of a cell change its pixels, and all edges left of a cell change it and the
      * cells right of it. The last column is right of the tile. */
-    camber_words changes[CAMBER_OWN_SIDE][CAMBER_OWN_SIDE + 1][2][CAMBER_VECTORS];
+    camber_words changes[CAMBER_TILE_CELLS][CAMBER_TILE_CELLS + 1][2][CAMBER_VECTORS];
     /* Just below the tops of rows of cells, and at the tile's lower end: the change of the winding number at a cell's
      * left side, for it and everything right of it. */
     int turns[CAMBER_TILE_CELLS + 1][CAMBER_TILE_CELLS + 1];
-    camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
-    int has_edges;    /* if false, nothing else is set */
     int placed_count; /* edges of the brush in the tile */
-    int kept_count;   /* edges that are here: only a cell's own, or all unless they are more than CAMBER_PLACED_MOST */
-    float placed[CAMBER_PLACED_WORDS][CAMBER_KEPT_MOST + CAMBER_LANES];
+    camber_u64 edged; /* cells that edges pass; rows of cells without them have no changes */
+#if !CAMBER_SHARES_TILE
+    int has_edges;  /* if false, nothing else is set */
+    int kept_count; /* edges that are here: all unless they are more than CAMBER_PLACED_MOST */
+    float placed[CAMBER_PLACED_WORDS][CAMBER_PLACED_MOST + CAMBER_LANES];
+#endif
 } camber_area_state;
 
 #define CAMBER_AREA_HERE 0
@@ -61,12 +62,12 @@ typedef struct camber_area_state {
 typedef struct camber_tile_state {
     /* Numbers of a cell that are used together are stored together, because planes of 4 KB conflict in the first-level
      * cache. */
-    camber_real brush[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* let through */
+    camber_real brush[CAMBER_OWN_CELLS][CAMBER_OWN_VECTORS]; /* let through */
     /* For a union: sums of areas and of normals. For polygons: what is inside each pixel, and the sums of the winding
      * numbers. */
-    camber_real sums[CAMBER_OWN_CELLS][3][CAMBER_VECTORS];
+    camber_real sums[CAMBER_OWN_CELLS][3][CAMBER_OWN_VECTORS];
     /* Red, green, blue, premultiplied; let through. */
-    camber_real level[CAMBER_LEVELS][CAMBER_OWN_CELLS][4][CAMBER_VECTORS];
+    camber_real level[CAMBER_LEVELS][CAMBER_OWN_CELLS][4][CAMBER_OWN_VECTORS];
     camber_u64 brushed, touched[CAMBER_LEVELS]; /* cells that the brush, and each level, has drawn in; one bit each */
     camber_u64 done;                            /* cells in which nothing below shows through */
     camber_u64 filled;                          /* cells in which no more of the same brush would show */
@@ -75,11 +76,13 @@ typedef struct camber_tile_state {
     int winding;                             /* winding number of the brush's rings at the tile's top left corner */
     camber_u8 blend_count[CAMBER_OWN_CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
+#if !CAMBER_SHARES_TILE
     camber_area_state area;
+#endif
 #if CAMBER_HAS_MASKS
     camber_brush_ext brush_ext; /* the same brush's extension */
     float layer_alpha;          /* alpha of a masked layer's colour, which covers as if it were opaque; else 1 */
-    camber_real mask[CAMBER_OWN_CELLS][CAMBER_VECTORS]; /* alpha of a masked layer; its coverage is in its level */
+    camber_real mask[CAMBER_OWN_CELLS][CAMBER_OWN_VECTORS]; /* alpha of a masked layer; its coverage is in its level */
 #endif
 } camber_tile_state;
 
@@ -96,6 +99,9 @@ CAMBER_FN int camber_lowest(camber_u64 bits) {
 #endif
 }
 
+/* The lowest cell of a set of own cells. */
+#define CAMBER_LOWEST_CELL(cells) (CAMBER_OWN_CELLS == 1 ? 0 : camber_lowest(cells))
+
 /* Less than CAMBER_NOTHING_PX counts as nothing, in each pixel. So in a cell that lets nothing through, what is below
  * changes nothing: skipping it, whenever that is noticed, changes only the time. */
 CAMBER_FN camber_real camber_let_through(camber_real through) {
@@ -105,7 +111,7 @@ CAMBER_FN camber_real camber_let_through(camber_real through) {
 /* Whether all pixels of a cell let nothing through. */
 CAMBER_FN int camber_lets_nothing(const camber_real *through) {
     camber_real most = through[0];
-    for (int v = 1; v < CAMBER_VECTORS; v++)
+    for (int v = 1; v < CAMBER_OWN_VECTORS; v++)
         most = CAMBER_MORE(through[v], most);
     return camber_most_of(most) < CAMBER_NOTHING_PX;
 }
@@ -120,7 +126,9 @@ CAMBER_FN void camber_tile_begin(camber_tile_state *c, camber_u64 cells, CAMBER_
     for (int i = 0; i < CAMBER_OWN_CELLS; i++)
         c->blend_count[i] = 0;
     c->brushed = c->filled = c->whole = 0;
+#if !CAMBER_SHARES_TILE
     c->area.has_edges = 0;
+#endif
     c->winding = 0;
     for (int k = 0; k < CAMBER_LEVELS; k++) {
         c->touched[k] = 0;
@@ -146,11 +154,11 @@ CAMBER_FN int camber_tile_is_full(const camber_tile_state *c) {
 /* Prepares cells that the brush is about to draw in, and has not drawn in yet. */
 CAMBER_FN void camber_tile_take_cells(camber_tile_state *c, camber_u64 cells) {
     for (camber_u64 left = cells & ~c->brushed; left; left &= left - 1) {
-        const int i = camber_lowest(left);
-        for (int v = 0; v < CAMBER_VECTORS; v++)
+        const int i = CAMBER_LOWEST_CELL(left);
+        for (int v = 0; v < CAMBER_OWN_VECTORS; v++)
             c->brush[i][v] = CAMBER_REAL(1.0f);
         for (int k = 0; k < 3 && c->now.mode == CAMBER_BRUSH_UNION; k++)
-            for (int v = 0; v < CAMBER_VECTORS; v++)
+            for (int v = 0; v < CAMBER_OWN_VECTORS; v++)
                 c->sums[i][k][v] = CAMBER_REAL(0.0f);
     }
     c->brushed |= cells;
@@ -183,7 +191,7 @@ CAMBER_FN void camber_tile_count(camber_tile_state *c, int i) {
 /* Draws a cell that is completely inside the stroke. */
 CAMBER_FN void camber_tile_put_whole(camber_tile_state *c, int i) {
     const float through = c->now.mode == CAMBER_BRUSH_UNION ? 0.0f : 1.0f - c->now.a;
-    for (int v = 0; v < CAMBER_VECTORS; v++)
+    for (int v = 0; v < CAMBER_OWN_VECTORS; v++)
         c->brush[i][v] *= through;
     if (through == 0.0f) {
         c->filled |= (camber_u64)1 << i;
@@ -201,7 +209,7 @@ CAMBER_FN void camber_tile_take_level(camber_tile_state *c, int level, int i) {
     if (c->touched[level] & bit)
         return;
     c->touched[level] |= bit;
-    for (int v = 0; v < CAMBER_VECTORS; v++) {
+    for (int v = 0; v < CAMBER_OWN_VECTORS; v++) {
         c->level[level][i][0][v] = c->level[level][i][1][v] = c->level[level][i][2][v] = CAMBER_REAL(0.0f);
         c->level[level][i][3][v] = CAMBER_REAL(1.0f);
 #if CAMBER_HAS_MASKS
@@ -230,8 +238,9 @@ CAMBER_FN void camber_tile_add(camber_real *stored, camber_real more, int is_new
 
 /* Composites the brush's accumulated coverage of a vector under the colours of its level. */
 CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, int v, int is_new) {
-    const int is_exact = c->now.mode == CAMBER_BRUSH_UNION || c->now.mode == CAMBER_BRUSH_SUM;
-    camber_real area = 1.0f - (is_exact ? c->brush[i][v] : camber_let_through(c->brush[i][v]));
+    /* Only segments that are drawn over each other may be skipped. */
+    const int skips = c->now.mode == CAMBER_BRUSH_OVER || c->now.mode == CAMBER_BRUSH_MASKED;
+    camber_real area = 1.0f - (skips ? camber_let_through(c->brush[i][v]) : c->brush[i][v]);
     if (c->now.mode == CAMBER_BRUSH_UNION)
         area = camber_united(area, c->sums[i][0][v], c->sums[i][1][v], c->sums[i][2][v]) * c->now.a;
     const camber_real through = camber_tile_through(c, level, i, v, is_new);
@@ -254,14 +263,14 @@ CAMBER_FN void camber_tile_close_vector(camber_tile_state *c, int level, int i, 
 }
 
 CAMBER_FN void camber_tile_close_cell(camber_tile_state *c, int level, int i, int is_new) {
-    for (int v = 0; v < CAMBER_VECTORS; v++)
+    for (int v = 0; v < CAMBER_OWN_VECTORS; v++)
         camber_tile_close_vector(c, level, i, v, is_new);
 }
 
 CAMBER_FN void camber_tile_close_brush(camber_tile_state *c) {
     const int level = camber_tile_level(c);
     for (camber_u64 left = c->brushed; left; left &= left - 1) {
-        const int i = camber_lowest(left);
+        const int i = CAMBER_LOWEST_CELL(left);
         if (c->touched[level] >> i & 1u)
             camber_tile_close_cell(c, level, i, 0);
         else
@@ -285,9 +294,9 @@ CAMBER_FN camber_real camber_tile_covered(const camber_tile_state *c, int level,
 CAMBER_FN void camber_tile_close_level(camber_tile_state *c, int level, float opacity) {
     const int below = level == CAMBER_LAYER && c->is_open[CAMBER_GROUP] ? CAMBER_GROUP : CAMBER_PICTURE;
     for (camber_u64 left = c->touched[level]; left; left &= left - 1) {
-        const int i = camber_lowest(left);
+        const int i = CAMBER_LOWEST_CELL(left);
         camber_tile_take_level(c, below, i);
-        for (int v = 0; v < CAMBER_VECTORS; v++) {
+        for (int v = 0; v < CAMBER_OWN_VECTORS; v++) {
             const camber_real through = c->level[below][i][3][v], seen = through * opacity;
             for (int k = 0; k < 3; k++)
                 c->level[below][i][k][v] += seen * c->level[level][i][k][v];

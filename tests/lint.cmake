@@ -79,7 +79,9 @@ set(build_gpu_pitched ${build_gpu} -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHE
 foreach(kernel IN LISTS kernels)
   get_filename_component(name ${kernel} NAME_WE)
   set(builds plain cpu pitched fan)
-  if(name STREQUAL "raster") # with one lane, as a whole: other files are for vectors
+  if(name MATCHES "_gpu$")
+    set(builds gpu gpu_pitched)
+  elseif(name STREQUAL "raster") # the only other file that has both
     list(APPEND builds gpu gpu_pitched)
   endif()
   foreach(build IN LISTS builds)

@@ -1,8 +1,6 @@
 /* The rasterizer's buffers on the device: counts their bytes, writes to them and reads them back. */
 #include "raster/rasterizer.h"
 
-#include "kernels/cells.h"
-
 #include <string.h>
 
 /* The bytes that buffers of each kind may take if there is no memory limit. */
@@ -60,8 +58,8 @@ uint64_t camber_raster_most_bytes(const camber_raster *raster, camber_raster_eig
 
 uint32_t camber_raster_widest(const camber_raster *raster) {
     const uint64_t planes = CAMBER_SPILL_PLANES * CAMBER_TILE_PX * CAMBER_TILE_PX,
-                   cells = CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS;
-    const uint64_t a_tile = 4 * (cells + planes + camber_raster_area_words(raster));
+                   states = camber_raster_state_words(raster);
+    const uint64_t a_tile = 4 * (states + planes + camber_raster_area_words(raster));
     const uint64_t tiles = camber_raster_most_bytes(raster, CAMBER_RASTER_SPILLS) / a_tile,
                    widest = tiles < CAMBER_TILES_MAX ? tiles : CAMBER_TILES_MAX;
     return CAMBER_TILE_PX * (widest ? (uint32_t)widest : 1);

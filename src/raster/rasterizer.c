@@ -18,7 +18,7 @@
  * which walks the whole list until its row is full. That takes more work, so it is only done where the processors would
  * otherwise wait for the tile: if it has more than one in SHARES of the segments that each of them draws. If there are
  * edges of rings, the tile must also be drawn in one slice, because its rows share the edges that they spill. */
-enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 1024, GPU_CHUNKS_MAX = 512, HEAVY = 2048, SHARES = 8 };
+enum { CHUNK = 8192, CHUNKS_MAX = 64, GPU_CHUNK = 256, GPU_CHUNKS_MAX = 4096, HEAVY = 2048, SHARES = 8 };
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
@@ -49,11 +49,12 @@ static camber_status settle(camber_raster *raster) {
     return status;
 }
 
-/* Starts a stage's kernel for job_count jobs. Each job is a work-group of one work-item, or of one work-item per cell.
- */
+/* Starts a stage's kernel for job_count jobs. Each job is a work-group of one work-item, or, on a GPU, of those that
+ * share a chunk or a tile. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
-    const size_t a_job = stage == STAGE_RASTERIZE && camber_raster_draws_cells(raster) ? CAMBER_CELLS : 1;
+    const bool is_alone = stage == STAGE_SETUP || stage == STAGE_WIND || !camber_raster_shares_tiles(raster);
+    const size_t a_job = is_alone ? 1 : CAMBER_TILE_ITEMS;
     camber_kernel *const kernels[STAGES] = {raster->program->setup,    raster->program->bin_count,
                                             raster->program->bin_scan, raster->program->bin_scatter,
                                             raster->program->wind,     raster->program->rasterize};
@@ -156,8 +157,8 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
     const camber_raster_area *area = &raster->band;
     const size_t lists = (raster->list_count + 15) / 16 * 16,
                  most = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_COUNTS) / (4 * lists));
-    const size_t least = camber_raster_draws_cells(raster) ? GPU_CHUNK : CHUNK;
-    const size_t chunks_max = camber_raster_draws_cells(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
+    const size_t least = camber_raster_shares_tiles(raster) ? GPU_CHUNK : CHUNK;
+    const size_t chunks_max = camber_raster_shares_tiles(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
     const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? ((raster->segment_count + count - 1) / count + 15) / 16 * 16 : 0;
@@ -288,7 +289,7 @@ static camber_status place_spills(camber_raster *raster, camber_spill_args k, bo
 static bool is_heavy(const camber_raster *raster, camber_spill_args k, size_t tile) {
     const uint64_t count = raster->starts[tile + 1] - raster->starts[tile], units = raster->device->info.compute_units;
     const bool at_once = k.is_last && raster->spill_count == 0;
-    return count > HEAVY && !camber_raster_draws_cells(raster) && (raster->end_edge == 0 || at_once) &&
+    return count > HEAVY && !camber_raster_shares_tiles(raster) && (raster->end_edge == 0 || at_once) &&
            SHARES * units * count > raster->starts[raster->tile_count];
 }
 
@@ -342,7 +343,7 @@ static camber_spill_args plan_spill(const camber_raster *raster, const camber_ra
     k.group = k.sums + (unions ? 3 : areas ? 2 : 0);
     k.layer = k.group + (groups ? 4 : 0);
     k.behind = k.layer + (layers ? 4 : 0) + (masks ? 1 : 0);
-    k.tile_words = CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS + k.behind * PLANE_WORDS;
+    k.tile_words = camber_raster_state_words(raster) + k.behind * PLANE_WORDS;
     k.tile_words += areas ? camber_raster_area_words(raster) : 0;
     return k;
 }

@@ -4,6 +4,8 @@
 
 #include "raster/raster.h"
 
+#include "kernels/cells.h"
+
 enum {
     BUFFER_ROWS,
     BUFFER_BRUSHES,
@@ -66,14 +68,18 @@ struct camber_raster {
     double ms[STAGES];
 };
 
-/* Whether each work-item of rasterize draws one cell of a tile, as on GPUs. */
-static inline bool camber_raster_draws_cells(const camber_raster *raster) {
+/* Whether the work-items of a group share a tile, as on GPUs. */
+static inline bool camber_raster_shares_tiles(const camber_raster *raster) {
     return raster->device->lanes == 1;
 }
 
-/* Returns how many words a tile spills for a brush of polygons. */
+/* Returns how many words a tile spills for a brush of polygons, and for everything else but its planes. */
 static inline uint32_t camber_raster_area_words(const camber_raster *raster) {
-    return camber_raster_draws_cells(raster) ? CAMBER_CELL_AREA_WORDS : CAMBER_AREA_WORDS;
+    return camber_raster_shares_tiles(raster) ? CAMBER_SHARED_AREA_WORDS : CAMBER_AREA_WORDS;
+}
+
+static inline uint32_t camber_raster_state_words(const camber_raster *raster) {
+    return camber_raster_shares_tiles(raster) ? CAMBER_TILE_ITEMS_WORDS : CAMBER_SPILL_CELL_WORDS * CAMBER_CELLS;
 }
 
 /* How many eighths of the drawing memory each kind of buffer may take. A picture with more segments is drawn in slices,

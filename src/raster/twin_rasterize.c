@@ -30,6 +30,55 @@ static void write_tile(const camber_twin *t, camber_tile_state *c, uint32_t colu
         }
 }
 
+/* Draws the cells that a segment may touch. */
+static void draw_segment(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+    camber_drawn_segment drawn;
+    camber_footprint footprint;
+    camber_cell_boxes box;
+    int is_begun = 0;
+    camber_footprint_of(d->from.segments + CAMBER_SEGMENT_WORDS * which, &footprint);
+    camber_cell_boxes_of(&footprint, d->where, 1, &box);
+    for (int row = box.y; row < box.y + box.rows; row++)
+        for (int column = box.x; column < box.x + box.columns; column++) {
+            const int cell = CAMBER_TILE_CELLS * row + column;
+            if ((c->done | c->filled) >> cell & 1)
+                continue;
+            if (!is_begun)
+                camber_begin_segment(&d->from, c, which, &drawn);
+            is_begun = 1;
+            camber_draw_cell(c, &drawn, camber_place_of(d->where, d->from.eye, cell));
+        }
+}
+
+static void add_ring_edge(camber_tile_state *c, const camber_drawn_tile *d, size_t which) {
+    const float *ends = d->from.edges + camber_edge_ends(which);
+    camber_ring_edges e;
+    camber_ring_edges_of(ends[0], ends[1], ends[2], ends[3], &e);
+    camber_area_add(&c->area, &e, 1, d->where);
+}
+
+/* Adds those edges of a bunch whose boxes touch the tile. `first` is the number of its first edge. */
+static void add_bunch(camber_tile_state *c, const camber_drawn_tile *d, size_t first) {
+    for (size_t which = first; which < first / 16u * 16u + 16u; which++) {
+        const float *ends = d->from.edges + camber_edge_ends(which);
+        if (CAMBER_BITS(d->from.edges[camber_edge_brush(which)]) == d->brush &&
+            camber_boxes_touch_tile(ends[0], ends[1], ends[2], ends[3], d->where))
+            add_ring_edge(c, d, which);
+    }
+}
+
+static void draw_entry(camber_tile_state *c, camber_drawn_tile *d, camber_u32 entry) {
+    const size_t which = camber_listed(entry);
+    const camber_u32 edge = camber_brush_of_edge(&d->from, which);
+    camber_draw_next_with(c, d, edge != CAMBER_NO_EDGE ? edge : camber_brush_of_segment(&d->from, which));
+    if (edge == CAMBER_NO_EDGE)
+        draw_segment(c, d, which);
+    else if (entry & CAMBER_LISTED_BUNCH)
+        add_bunch(c, d, which);
+    else
+        add_ring_edge(c, d, which);
+}
+
 /* Draws a tile, given the crossings of its row and their number. */
 static void draw_tile(const camber_twin *t, camber_tile_state *c, camber_drawn_tile *d, uint32_t row,
                       camber_u32 crossing_count) {
@@ -41,7 +90,7 @@ static void draw_tile(const camber_twin *t, camber_tile_state *c, camber_drawn_t
     d->brush = UINT32_MAX;
     camber_tile_begin(c, ~(camber_u64)0, t->scene->brushes);
     for (uint32_t k = starts[1]; k-- > starts[0];)
-        camber_draw_listed(c, d, k);
+        draw_entry(c, d, t->stages->lists[k]);
     camber_draw_areas_above(c, d, 0);
     camber_end_area(c, d);
     camber_tile_end(c);
@@ -78,7 +127,6 @@ camber_status camber_twin_draw(const camber_twin *t) {
                                     .side_table = t->scene->side_table,
                                     .brushes = t->scene->brushes,
                                     .brush_ext = t->scene->brush_ext,
-                                    .lists = stages->lists,
                                     .first_edge = (uint32_t)t->first_edge,
                                     .edge_count = (uint32_t)(t->end_edge - t->first_edge),
                                     .eye = eye},

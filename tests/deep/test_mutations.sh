@@ -324,7 +324,7 @@ mutant strip kernels/area_inside.h "areas: holes that fill" 'sum < 0 ? -sum : su
 mutant strip kernels/area_inside.h "areas: overlaps that count twice" 'of.least < -1 || of.most > 1 || of.most - of.least > 1' \
     'of.least < -9'
 mutant strip kernels/area.h "areas: level edges that mark no cell" 'else if (camber_integer_of(&t->flat, k))' 'else if (0)'
-mutant strip kernels/area.h "areas: edges inside a pixel that end with their cells" 'to[first + i] += height' 'to[first + i] += 0u'
+mutant strip kernels/area.h "areas: edges inside a pixel that end with their cells" 'CAMBER_ADD_TO(on + first + i, height)' 'CAMBER_ADD_TO(on + first + i, 0u)'
 mutant strip kernels/area.h "areas: pixels as high as their tops" 'CAMBER_LANES * v + CAMBER_CELL_PX)' 'CAMBER_LANES * v)'
 mutant strip kernels/rasterize.cl "areas: bunches of other areas" 'CAMBER_LOAD(v, brushes) == brush' 'CAMBER_LOAD(v, brushes) != brush'
 group='along lines: glyphs'
@@ -396,21 +396,26 @@ mutant strip kernels/rasterize_sixteen.cl "flat joins taken for caps" 'joined_a 
 mutant strip kernels/rasterize_sixteen.cl "caps at the other end" 'p->flat_b - at->past_b' 'p->flat_a - at->past_b'
 level=(--full) # 1, 8 and 16 lanes
 mutant strip kernels/rasterize.cl "rows of cells that lie abreast, from the top" 'v * (CAMBER_LANES / CAMBER_CELL_PX)' '0 * v'
-mutant strip kernels/rasterize_one.cl "one lane: a tile's cells that change places" 'cell_column = (int)cell % CAMBER_TILE_CELLS' \
-    'cell_column = (int)cell / CAMBER_TILE_CELLS'
+mutant strip kernels/rasterize_gpu.cl "GPUs: a tile's cells that change places" 'cell % CAMBER_TILE_CELLS, (int)item' \
+    'cell / CAMBER_TILE_CELLS, (int)item'
+mutant strip kernels/rasterize_gpu.cl "GPUs: batches whose changes the next forgets" 'add_changes(&batch, count, &changes)' \
+    'add_changes(&batch, 0u, &changes)'
+mutant strip kernels/area_gpu.cl "GPUs: areas as if no edge were left of a cell" 'sum += s->changes' 'sum += 0u * s->changes'
+mutant strip kernels/bins_gpu.cl "GPUs: pairs that all come first in their lists" 'before += i < pair ? same : 0u' \
+    'before += i < pair ? 0u : 0u'
 level=()
 mutant strip kernels/draw_cells.h "one pixel after the other: cells that lie elsewhere" 'where.left + 0.5f + (float)' \
     'where.left + (float)'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # A picture in slices alone shows these.
-mutant strip kernels/spill.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, cell);
+mutant strip kernels/spill_cell.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, place);
     if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
-        spill' 'c->sums[i][0], s.sums, 2, cell);
+        spill' 'c->sums[i][0], s.sums, 2, place);
     if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
         spill'
-mutant strip kernels/spill.cl "slices: a layer without alpha" 'restore_planes(from->planes, c->level[CAMBER_LAYER][i][0], s.layer, 4' \
-    'restore_planes(from->planes, c->level[CAMBER_LAYER][i][0], s.layer, 3'
+mutant strip kernels/spill_cell.cl "slices: a layer without alpha" 'restore_planes(planes, c->level[CAMBER_LAYER][i][0], s.layer, 4' \
+    'restore_planes(planes, c->level[CAMBER_LAYER][i][0], s.layer, 3'
 mutant strip kernels/spill.cl "slices: areas without what lies left of them" 'c->winding = (int)open' 'c->winding = 0 * (int)open'
 
 mutant strip kernels/wind.cl "areas: all rows by the top of the first" 'of.top + (float)(row * CAMBER_TILE_PX)' 'of.top'

@@ -165,7 +165,7 @@ static void test_twin(void **state) {
     compare_with_twin(*state);
 }
 
-/* Kernels as a GPU runs them: a work-item takes a cell. */
+/* Kernels as a GPU runs them: work-items share a tile. */
 static void test_cells(void **state) {
     const camber_device_desc desc = {.lanes = 1};
     fixture other = open_other(*state, &desc);

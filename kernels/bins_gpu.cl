@@ -120,8 +120,10 @@ CAMBER_FN CAMBER_INLINE void find_rank(local const pair_window *w, camber_u32 pa
     rank->is_last = after == 0u;
 }
 
-/* Adds a work-item's count up over all before it. Barriers are inside. */
+/* Adds a work-item's count up over all before it. Barriers are inside; the first is for those who still read the ends
+ * that were there before. */
 CAMBER_FN CAMBER_INLINE void sum_up(local camber_u32 *ends, camber_u32 item, camber_u32 count) {
+    barrier(CLK_LOCAL_MEM_FENCE);
     ends[item] = count;
     for (camber_u32 step = 1u; step < CAMBER_TILE_ITEMS; step *= 2u) {
         barrier(CLK_LOCAL_MEM_FENCE);
@@ -132,35 +134,59 @@ CAMBER_FN CAMBER_INLINE void sum_up(local camber_u32 *ends, camber_u32 item, cam
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
+/* The lists that pairs are added to, or their counts. */
+typedef struct bins {
+    global const camber_u32 *starts;
+    global camber_u32 *own, *lists; /* own: the chunk's counts. lists: NULL if pairs are only counted */
+} bins;
+
+/* Adds the first `count` pairs of the window to their lists, or counts them. Barriers are inside; one must be before.
+ */
+CAMBER_FN CAMBER_INLINE void put_pairs(local const pair_window *w, camber_u32 count, camber_u32 item, const bins *to) {
+    pair_rank ranks[WINDOW / CAMBER_TILE_ITEMS];
+    for (camber_u32 i = 0, pair = item; pair < count; i++, pair += CAMBER_TILE_ITEMS) {
+        const camber_u32 list = w->lists[pair];
+        find_rank(w, pair, count, ranks + i);
+        if (to->lists)
+            to->lists[to->starts[list] + to->own[list] + ranks[i].before] = w->entries[pair];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+    for (camber_u32 i = 0, pair = item; pair < count; i++, pair += CAMBER_TILE_ITEMS)
+        if (ranks[i].is_last)
+            to->own[w->lists[pair]] += ranks[i].before + 1u;
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+}
+
+/* Adds the segments of a chunk to their lists, or counts them. */
+CAMBER_FN CAMBER_INLINE void bin_chunk(local pair_window *w, global const float *segments, global const float *edges,
+                                       global const camber_u32 *boxes, global const camber_u32 *bunches,
+                                       camber_u32 chunk, const camber_bin_args *c, const bins *to) {
+    const camber_u32 item = (camber_u32)get_local_id(0);
+    const camber_u32 from = chunk * c->a_chunk, end = min(from + c->a_chunk, c->segment_count);
+    for (camber_u32 first = from; first < end; first += CAMBER_TILE_ITEMS) {
+        const camber_u32 which = min(first + item, end - 1u);
+        const listed_segment s = listed_segment_of(segments, edges, boxes, bunches, c, which);
+        const camber_u32 count = first + item < end ? count_pairs(&s, bunches, c) : 0u;
+        sum_up(w->ends, item, count);
+        const camber_u32 all = w->ends[CAMBER_TILE_ITEMS - 1u], at = w->ends[item] - count;
+        for (camber_u32 begin = 0; begin < all; begin += WINDOW) {
+            if (count)
+                write_pairs(w, &s, bunches, c, at - begin);
+            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+            put_pairs(w, min(all - begin, WINDOW), item, to);
+        }
+    }
+}
+
 kernel __attribute__((reqd_work_group_size(CAMBER_TILE_ITEMS, 1, 1))) void bin_count(
     global const float *restrict segments, global const float *restrict edges, global const camber_u32 *restrict boxes,
     global const camber_u32 *restrict bunches, global camber_u32 *restrict counts, const camber_bin_args c) {
     local pair_window window;
-    const camber_u32 item = (camber_u32)get_local_id(0), chunk = (camber_u32)get_group_id(0);
-    const camber_u32 from = chunk * c.a_chunk, end = min(from + c.a_chunk, c.segment_count);
-    global camber_u32 *own = counts + (size_t)chunk * c.lists;
-    for (camber_u32 i = item; i < c.lists; i += CAMBER_TILE_ITEMS)
-        own[i] = 0;
-    for (camber_u32 first = from; first < end; first += CAMBER_TILE_ITEMS) {
-        const camber_u32 which = min(first + item, end - 1u);
-        const listed_segment s = listed_segment_of(segments, edges, boxes, bunches, &c, which);
-        const camber_u32 count = first + item < end ? count_pairs(&s, bunches, &c) : 0u;
-        sum_up(window.ends, item, count);
-        const camber_u32 all = window.ends[CAMBER_TILE_ITEMS - 1u], at = window.ends[item] - count;
-        for (camber_u32 begin = 0; begin < all; begin += WINDOW) {
-            const camber_u32 pairs = min(all - begin, WINDOW);
-            if (count)
-                write_pairs(&window, &s, bunches, &c, at - begin);
-            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-            for (camber_u32 i = item; i < pairs; i += CAMBER_TILE_ITEMS) {
-                pair_rank rank;
-                find_rank(&window, i, pairs, &rank);
-                if (rank.is_last)
-                    own[window.lists[i]] += rank.before + 1u;
-            }
-            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-        }
-    }
+    const camber_u32 chunk = (camber_u32)get_group_id(0);
+    const bins to = {0, counts + (size_t)chunk * c.lists, 0};
+    for (camber_u32 i = (camber_u32)get_local_id(0); i < c.lists; i += CAMBER_TILE_ITEMS)
+        to.own[i] = 0;
+    bin_chunk(&window, segments, edges, boxes, bunches, chunk, &c, &to);
 }
 
 /* Sixteen lists in each of sixteen parts of the chunks. */
@@ -194,38 +220,9 @@ kernel __attribute__((reqd_work_group_size(CAMBER_TILE_ITEMS, 1, 1))) void bin_s
     global const camber_u32 *restrict bunches, global const camber_u32 *restrict starts,
     global camber_u32 *restrict counts, global camber_u32 *restrict lists, const camber_bin_args c) {
     local pair_window window;
-    const camber_u32 item = (camber_u32)get_local_id(0), chunk = (camber_u32)get_group_id(0);
-    const camber_u32 from = chunk * c.a_chunk, end = min(from + c.a_chunk, c.segment_count);
-    global camber_u32 *own = counts + (size_t)chunk * c.lists;
-    for (camber_u32 first = from; first < end; first += CAMBER_TILE_ITEMS) {
-        const camber_u32 which = min(first + item, end - 1u);
-        const listed_segment s = listed_segment_of(segments, edges, boxes, bunches, &c, which);
-        const camber_u32 count = first + item < end ? count_pairs(&s, bunches, &c) : 0u;
-        sum_up(window.ends, item, count);
-        const camber_u32 all = window.ends[CAMBER_TILE_ITEMS - 1u], at = window.ends[item] - count;
-        for (camber_u32 begin = 0; begin < all; begin += WINDOW) {
-            const camber_u32 pairs = min(all - begin, WINDOW);
-            if (count)
-                write_pairs(&window, &s, bunches, &c, at - begin);
-            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-            pair_rank ranks[WINDOW / CAMBER_TILE_ITEMS];
-            for (camber_u32 i = 0; i < WINDOW / CAMBER_TILE_ITEMS; i++) {
-                const camber_u32 pair = i * CAMBER_TILE_ITEMS + item;
-                if (pair >= pairs)
-                    continue;
-                const camber_u32 list = window.lists[pair];
-                find_rank(&window, pair, pairs, ranks + i);
-                lists[starts[list] + own[list] + ranks[i].before] = window.entries[pair];
-            }
-            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-            for (camber_u32 i = 0; i < WINDOW / CAMBER_TILE_ITEMS; i++) {
-                const camber_u32 pair = i * CAMBER_TILE_ITEMS + item;
-                if (pair < pairs && ranks[i].is_last)
-                    own[window.lists[pair]] += ranks[i].before + 1u;
-            }
-            barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-        }
-    }
+    const camber_u32 chunk = (camber_u32)get_group_id(0);
+    const bins to = {starts, counts + (size_t)chunk * c.lists, lists};
+    bin_chunk(&window, segments, edges, boxes, bunches, chunk, &c, &to);
 }
 
 #endif

@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* CHUNK, CHUNKS_MAX: the fewest segments of a chunk, and the most chunks, which are limited because each has a count
- * for every tile. A GPU has more chunks, because it needs many work-items.
+ * for every tile. A GPU has more chunks, because it needs many work-groups.
  * HEAVY: on a CPU, a tile with more segments than this is drawn by as many work-items as it has rows of cells, each of
  * which walks the whole list until its row is full. That takes more work, so it is only done where the processors would
  * otherwise wait for the tile: if it has more than one in SHARES of the segments that each of them draws. If there are
@@ -159,8 +159,8 @@ static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_c
                  most = (size_t)(camber_raster_most_bytes(raster, CAMBER_RASTER_COUNTS) / (4 * lists));
     const size_t least = camber_raster_shares_tiles(raster) ? GPU_CHUNK : CHUNK;
     const size_t chunks_max = camber_raster_shares_tiles(raster) ? GPU_CHUNKS_MAX : CHUNKS_MAX;
-    const size_t wanted = (raster->segment_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
-    const size_t count = wanted < bound || bound == 0 ? wanted : bound;
+    const size_t wanted = (raster->segment_count + least - 1) / least;
+    const size_t bound = most == 0 ? 1 : most < chunks_max ? most : chunks_max, count = wanted < bound ? wanted : bound;
     const size_t a_chunk = count ? ((raster->segment_count + count - 1) / count + 15) / 16 * 16 : 0;
     *chunk_count = (uint32_t)count;
     uint32_t first_edge, edge_count;

@@ -391,11 +391,4 @@ CAMBER_FN void camber_area_find(camber_tile_state *c, camber_tile_rows where, ca
 
 #endif
 
-/* Draws the inside of the brush's rings, before the brush is closed. */
-CAMBER_FN void camber_area_draw(camber_tile_state *c, camber_tile_rows where) {
-    camber_area_cells found;
-    camber_area_find(c, where, &found);
-    camber_area_put(c, found);
-}
-
 #endif

@@ -220,8 +220,10 @@ static inline void draw_waiting(camber_tile_state *c, const positions *at, globa
 /* Draws the polygon whose edges have been added. */
 static inline void end_area(camber_tile_state *c, const positions *at, const tile_brushes *from,
                             camber_tile_rows where) {
+    camber_area_cells found;
     if (!camber_brush_is_area(&c->now))
         return;
+    camber_area_find(c, where, &found);
 #if CAMBER_RASTER_RICH
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE) {
         const drawn_segment source = {
@@ -233,13 +235,11 @@ static inline void end_area(camber_tile_state *c, const positions *at, const til
             from->eye
 #endif
         };
-        camber_area_cells found;
-        camber_area_find(c, where, &found);
         fill_with_images(c, at, source, found);
         return;
     }
 #endif
-    camber_area_draw(c, where);
+    camber_area_put(c, found);
 }
 
 static inline void change_brush(camber_tile_state *c, const positions *at, tile_brushes *from, camber_tile_rows where,

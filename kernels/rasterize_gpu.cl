@@ -3,9 +3,9 @@
  *
  * The list is walked from its end in batches of as many entries as there are work-items. Each work-item reads one
  * entry, and sets its bit in the words of the cells that its box touches. Then each draws only the entries of its own
- * cell, in the order of the list. Where the list changes to another brush, layer or group, bits say so: a work-item
+ * cell, in the order of the list. Bits mark the entries that change to another brush, layer or group: a work-item
  * that has no entry between two others must still close what has ended. The entries of a batch are all segments, or all
- * edges of one brush, which area_gpu.cl adds up. What work-items tell each other are sums of integers and sets of bits,
+ * edges of one brush, which area_gpu.cl adds up. Work-items tell each other only sums of integers and sets of bits,
  * which do not depend on their order, so the bytes are those of the twin. */
 #include "spill_cell.cl"
 
@@ -139,6 +139,31 @@ static inline int is_ended(const camber_tile_state *c, const camber_drawn_tile *
     return slice->is_last || camber_next_area(&d->left, &c->now) > camber_areas_end(&d->left, slice->is_last);
 }
 
+/* Restores what a work-item has drawn in earlier slices. */
+static inline void restore_drawn(camber_tile_state *c, camber_drawn_tile *d, const spilled_tile *from,
+                                 camber_spill_args slice, camber_u32 item) {
+    d->brush = restore_own(c, from, slice, item, d->from.brushes);
+    if (d->brush == ~0u)
+        return;
+#if CAMBER_RASTER_RICH
+    camber_tile_use_ext(c, d->from.brush_ext[d->brush]);
+#endif
+    c->winding += camber_take_winding(&d->left, d->brush);
+}
+
+/* Closes what the last slice leaves open, and in other slices a cell that is full, which is then done. */
+CAMBER_NOINLINE void end_drawn(camber_tile_state *c, const camber_drawn_tile *d, camber_u32 is_last) {
+    const int is_full = camber_tile_is_full(c);
+    if (is_last)
+        camber_end_area(c, d);
+    if (is_last || is_full)
+        camber_tile_end(c);
+    if (!is_last && is_full) {
+        camber_tile_close_brush(c);
+        c->done = ~0ul;
+    }
+}
+
 /* Writes a row of pixels. Above the horizon is the sky. */
 CAMBER_NOINLINE void write_row(camber_tile_state *c, int is_sky, global camber_u32 *pixels, camber_target_args s) {
     const float back[4] = {s.r, s.g, s.b, s.a};
@@ -189,13 +214,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_TILE_ITEMS, 1, 1))) void raste
     if (CAMBER_RASTER_PITCHED && where.top + (float)(CAMBER_CELL_PX * (own.cell_row + 1)) <= s.horizon)
         c.done = ~0ul;
     if (!(spilled & CAMBER_JOB_BEGINS)) {
-        d.brush = restore_own(&c, &own_spill, slice, item, brushes);
-        if (d.brush != ~0u) {
-#if CAMBER_RASTER_RICH
-            camber_tile_use_ext(&c, brush_ext[d.brush]);
-#endif
-            c.winding += camber_take_winding(&d.left, d.brush);
-        }
+        restore_drawn(&c, &d, &own_spill, slice, item);
         if (has_areas)
             restore_edges(&shared, &run, &own_spill, item);
     }
@@ -254,15 +273,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_TILE_ITEMS, 1, 1))) void raste
         change_to(&c, &d, &seen, &changes, brush_of_entry(&d, lists[first]));
     barrier(CLK_LOCAL_MEM_FENCE);
     camber_draw_areas_above(&c, &d, camber_areas_end(&d.left, slice.is_last));
-    const int is_full = camber_tile_is_full(&c);
-    if (slice.is_last)
-        camber_end_area(&c, &d);
-    if (slice.is_last || is_full)
-        camber_tile_end(&c);
-    if (!slice.is_last && is_full) {
-        camber_tile_close_brush(&c);
-        c.done = ~0ul;
-    }
+    end_drawn(&c, &d, slice.is_last);
     if (!slice.is_last) {
         spill_own(&c, &own_spill, slice, item, d.brush);
         if (has_areas)

@@ -21,7 +21,7 @@
 
 #include "tile_state.h"
 
-/* Where work-items share a tile, each adds other edges to it. Sums of integers do not depend on the order. */
+/* If work-items share a tile, each adds other edges to it. Sums of integers do not depend on the order. */
 #if CAMBER_SHARES_TILE
 #define CAMBER_SHARED local
 #define CAMBER_ADD_TO(sum, change) ((void)atomic_add(sum, change))
@@ -571,7 +571,7 @@ CAMBER_FN camber_placed_edges camber_placed_edges_of(const camber_tile_edges *t)
 }
 
 #if CAMBER_SHARES_TILE
-/* Counts an edge. Where polygons overlap, edges are read once more. */
+/* Counts an edge. If polygons overlap, their edges are read again. */
 CAMBER_FN void camber_area_place(local camber_area_state *s, const camber_tile_edges *t, int count) {
     (void)count;
     if (t->matters)

@@ -1,8 +1,9 @@
-/* Polygons in a tile that work-items share: each adds other edges to the changes, which are in local memory, and finds
- * what is inside its own row of pixels. The results are those of camber_area_find, to the bit.
+/* Polygons in a tile that work-items share: each adds other edges to the winding changes, which are in local memory,
+ * and then finds how much of each of its own four pixels is inside. The results are those of camber_area_find, to the
+ * bit.
  *
- * Where polygons overlap, a tile of a CPU looks at the edges that it has kept. There is no room for them here, so a
- * work-item reads the brush's entries of the list once more; there are few such cells. */
+ * For a cell in which polygons overlap, a CPU looks at the edges that the tile has kept. There is no room for them
+ * here, so a work-item reads the brush's entries of the list again; there are few such cells. */
 #ifndef CAMBER_AREA_GPU_CL
 #define CAMBER_AREA_GPU_CL
 

@@ -6,8 +6,8 @@
  * in the same way.
  *
  * The sixteen pixels of a cell are in CAMBER_VECTORS vectors. The kernels have one or two, and the twin, which compiles
- * this file too, has sixteen of one lane. A work-item of a GPU has only the four pixels of its row.
- * A cell that has received nothing is not stored: the sets of cells say so. */
+ * this file too, has sixteen of one lane. A work-item of a GPU has only the four pixels of its row. A cell that has
+ * received nothing is not stored: the sets of cells say so. */
 #ifndef CAMBER_KERNELS_TILE_STATE_H
 #define CAMBER_KERNELS_TILE_STATE_H
 

@@ -307,7 +307,6 @@ static int check_drawing(camber_context *context, camber_made_scene *s) {
     return failures;
 }
 
-/* Every step-th rotation. */
 /* As on a GPU, in slices: other tests compare the bytes, these look for races between work-items. */
 static int check_one_lane(camber_context *context, camber_made_scene *s) {
     const camber_device_desc desc = {.lanes = 1, .largest_buffer_bytes = 384 * 1024};
@@ -322,6 +321,7 @@ static int check_one_lane(camber_context *context, camber_made_scene *s) {
     return !good;
 }
 
+/* Every step-th rotation. */
 static int check_device(camber_context *context, camber_made_scene *s, const camber_device_desc *desc, size_t first,
                         size_t step) {
     camber_device *device = NULL;

@@ -409,9 +409,9 @@ mutant strip kernels/draw_cells.h "one pixel after the other: cells that lie els
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # A picture in slices alone shows these.
-mutant strip kernels/spill_cell.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, place);
+mutant strip kernels/spill_cell.cl "slices: sums of a union that are not whole" 'c->sums[i][0], s.sums, 3, share);
     if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
-        spill' 'c->sums[i][0], s.sums, 2, place);
+        spill' 'c->sums[i][0], s.sums, 2, share);
     if (sets & CAMBER_SPILL_TOUCHED(CAMBER_PICTURE))
         spill'
 mutant strip kernels/spill_cell.cl "slices: a layer without alpha" 'restore_planes(planes, c->level[CAMBER_LAYER][i][0], s.layer, 4' \

@@ -12,11 +12,14 @@ program=$1
 # Its clang reads the kernels from memory only where it may write a cache. 21.10 does not know
 # llvm.experimental.noalias.scope.decl, which clang leaves where it inlines a function that returns a struct.
 check() { # options of kernels, arguments of the program
-    oclgrind --data-races --check-api --build-options "$1" --log "$folder/log" "$program" "${@:2}" || exit
-    [ -s "$folder/log" ] || return 0
-    echo "oclgrind found:"
-    head -n 40 "$folder/log"
-    exit 1
+    oclgrind --data-races --check-api --build-options "$1" --log "$folder/log" "$program" "${@:2}"
+    local status=$?
+    if [ -s "$folder/log" ]; then
+        echo "oclgrind found:"
+        head -n 40 "$folder/log"
+        exit 1
+    fi
+    [ $status -eq 0 ] || exit $status
 }
 check -fno-inline
 # 21.10 does not know llvm.abs either, which clang makes of an integer that is optimised.

@@ -126,9 +126,11 @@ CAMBER_FN CAMBER_INLINE void draw_segments(camber_tile_state *c, camber_drawn_ti
     for (camber_u32 i = 0; i < BATCH_WORDS; i++)
         for (camber_u32 left = b->touching[cell][i]; left && !camber_tile_is_full(c); left &= left - 1u) {
             const camber_u32 k = 32u * i + (camber_u32)popcount((left - 1u) & ~left);
-            list_changes to = *before;
-            add_changes(b, k + 1u, &to);
-            change_to(c, d, seen, &to, b->brushes[k]);
+            if (before->brush + count_until(b->brush, k + 1u) != seen->brush) {
+                list_changes to = *before;
+                add_changes(b, k + 1u, &to);
+                change_to(c, d, seen, &to, b->brushes[k]);
+            }
             draw_segment(c, d, b->segments[k]);
         }
 }
